@@ -1,5 +1,6 @@
 # Writes all.hpp (every generated header) and type_list.hpp (every generated struct, by name) into
 # OUTPUT_DIR, for what treats all types alike. Reads the headers NAMES names there; run with cmake -P.
+cmake_minimum_required(VERSION 3.25)
 set(includes "")
 set(macro "")
 set(types "")
