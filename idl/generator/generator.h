@@ -64,6 +64,8 @@ enum { SIZE_LIMIT = 1 << 20 };
 size_t serialized_size_max(const idl_struct_t* node);
 /// Size of the key members in plain CDR, as hashed for the DDS key.
 size_t key_size(const idl_struct_t* node);
+/// The same with `last` and what stands before it; all with NULL.
+size_t key_size_up_to(const idl_struct_t* node, const idl_member_t* last);
 bool has_key(const idl_struct_t* node);
 /// How many elements an array declarator has, 1 for a plain one.
 size_t element_count(const idl_declarator_t* declarator);

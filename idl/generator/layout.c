@@ -38,11 +38,14 @@ size_t element_count(const idl_declarator_t* declarator) {
 
 size_t serialized_size_max(const idl_struct_t* node) { return align(4 + end_of_struct(node, 0), 4); }
 
-size_t key_size(const idl_struct_t* node) {
+size_t key_size(const idl_struct_t* node) { return key_size_up_to(node, NULL); }
+
+size_t key_size_up_to(const idl_struct_t* node, const idl_member_t* last) {
   const idl_member_t* member;
   size_t offset = 0;
   IDL_FOREACH(member, node->members) {
     if (member->key.value) offset = end_of_member(member, offset);
+    if (member == last) break;
   }
   return offset;
 }
