@@ -48,7 +48,7 @@ class JointMotion {
   explicit JointMotion(std::span<const double> positions);
 
   /// From any state to rest at `goal`: as fast as the rate and acceleration limits let the slowest
-  /// coordinate be. Started in motion, the limits are exceeded by as little as the start allows.
+  /// coordinate be. Started in motion, one quintic may have to strain the limits (a few per cent).
   void go(std::span<const ScalarMotion> from, std::span<const double> goal, double start_s, double rate_max,
           double acceleration_max);
   /// From any state to rest, wherever that is, within the acceleration limit.
