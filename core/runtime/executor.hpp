@@ -9,8 +9,8 @@ namespace eciton::runtime {
 class Executor {
  public:
   /// `participants`: all that the services use, sharing one waker, the one on the module ring first.
-  Executor(const ExecutorConfig& config, std::vector<bus::Participant*> participants)
-      : group_(config, std::move(participants), ServiceGroup::ExecutionTime::measured) {}
+  Executor(const ExecutorConfig& config, std::vector<bus::Participant*> participants, ServiceGroup::Pacing pacing)
+      : group_(config, std::move(participants), pacing) {}
   virtual ~Executor() = default;
 
   /// Before run. The service outlives the executor. Throws BadInput on a bad schedule.

@@ -13,6 +13,7 @@ void RealtimeExecutor::run(const StopFlag& stop) {
       spdlog::warn("{}: {}", group_.config().process, *missing);
     }
   }
+  group_.mute();
   group_.wake_by_triggers();
   Sleeper sleeper(group_.waker(), stop);
   // Periods alone need no waker; heartbeats then bound how late a stop is seen.

@@ -10,7 +10,8 @@ namespace eciton::runtime {
 /// skipped and counted.
 class RealtimeExecutor final : public Executor {
  public:
-  using Executor::Executor;
+  RealtimeExecutor(const ExecutorConfig& config, std::vector<bus::Participant*> participants)
+      : Executor(config, std::move(participants), ServiceGroup::Pacing::wall_clock) {}
 
   /// Becomes real-time if config.realtime_priority says so, with one warning if it may not.
   void run(const StopFlag& stop) override;

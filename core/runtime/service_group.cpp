@@ -30,9 +30,8 @@ void check(const Service& service, const Schedule& schedule, const std::string& 
 
 }  // namespace
 
-ServiceGroup::ServiceGroup(const ExecutorConfig& config, std::vector<bus::Participant*> participants,
-                           ExecutionTime execution)
-    : config_(config), participants_(std::move(participants)), execution_(execution) {
+ServiceGroup::ServiceGroup(const ExecutorConfig& config, std::vector<bus::Participant*> participants, Pacing pacing)
+    : config_(config), participants_(std::move(participants)), pacing_(pacing) {
   if (participants_.empty()) throw BadInput{{"process " + config_.process + ": an executor needs a participant"}};
   for (const bus::Participant* participant : participants_) {
     ECITON_EXPECT(&const_cast<bus::Participant*>(participant)->waker() == &waker(),
@@ -43,7 +42,7 @@ ServiceGroup::ServiceGroup(const ExecutorConfig& config, std::vector<bus::Partic
   }
 }
 
-ServiceGroup::Entry& ServiceGroup::add(Service& service) {
+ServiceGroup::Entry& ServiceGroup::add(Service& service, Pace at) {
   const Schedule schedule = service.schedule();
   check(service, schedule, config_.process);
   for (const auto& other : entries_) {
@@ -54,7 +53,7 @@ ServiceGroup::Entry& ServiceGroup::add(Service& service) {
   auto entry = std::make_unique<Entry>();
   entry->service = &service;
   entry->schedule = schedule;
-  entry->next_due = entry->triggered() ? started_at_ + schedule.at_most : started_at_;
+  entry->next_due = entry->triggered() ? at + schedule.at_most : at;
   fill_constant_fields(*entry);
   const auto place = std::upper_bound(entries_.begin(), entries_.end(), schedule.phase,
                                       [](Phase phase, const auto& other) { return phase < other->schedule.phase; });
@@ -71,17 +70,19 @@ void ServiceGroup::fill_constant_fields(Entry& entry) {
   heartbeat.service_key = name_key(entry.service->name());
   heartbeat.service = entry.service->name();
   heartbeat.vendor = std::string_view(module_ring().config().vendor);
-  heartbeat.pid = execution_ == ExecutionTime::measured ? static_cast<std::uint32_t>(::getpid()) : 0;
+  heartbeat.pid = pacing_ != Pacing::simulated ? static_cast<std::uint32_t>(::getpid()) : 0;
 }
 
 void ServiceGroup::start(Pace at) {
-  started_at_ = at;
   if (heartbeat_) next_heartbeat_ = at;
   for (const auto& entry : entries_) entry->next_due = entry->triggered() ? at + entry->schedule.at_most : at;
 }
 
-void ServiceGroup::wake_by_triggers() {
+void ServiceGroup::mute() {
   for (bus::Participant* participant : participants_) participant->set_all_wake(false);
+}
+
+void ServiceGroup::wake_by_triggers() {
   for (const auto& entry : entries_) {
     if (entry->triggered()) entry->schedule.trigger->set_wakes(true);
   }
@@ -104,14 +105,14 @@ Pace ServiceGroup::step(Entry& entry, Pace at, TimePoint now) noexcept {
     sampled = entry.schedule.trigger->has_sample();
     entry.received = entry.schedule.trigger->statistics().received;
   }
-  const bool measured = execution_ == ExecutionTime::measured;
+  const bool measured = pacing_ != Pacing::simulated;
   const Duration before = measured ? monotonic_now() : Duration::zero();
   entry.service->step(now);
   const Duration execution = measured ? monotonic_now() - before : Duration::zero();
   entry.statistics.record(at, execution);
   if (entry.triggered()) {
     if (!sampled) entry.statistics.count_timeout();
-    if (execution > entry.schedule.at_most) entry.statistics.count_overruns(1);
+    if (pacing_ == Pacing::wall_clock && execution > entry.schedule.at_most) entry.statistics.count_overruns(1);
     entry.next_due = at + entry.schedule.at_most;
   } else {
     const Duration period = entry.schedule.period;

@@ -26,9 +26,9 @@ using Pace = Duration;
 
 class ServiceGroup {
  public:
-  /// measured: reads the monotonic clock around each step. omitted: execution times and the process id are
-  /// reported as zero, so that a run is the same to the bit.
-  enum class ExecutionTime { measured, omitted };
+  /// Whose clock paces the group. simulated: execution times and the process id are reported as zero, so that a
+  /// run is the same to the bit. How long a step takes is an overrun on the wall clock only.
+  enum class Pacing { wall_clock, lockstep, simulated };
 
   struct Entry {
     Service* service;
@@ -43,26 +43,28 @@ class ServiceGroup {
   };
 
   /// `participants`: all that the services use, the one on the module ring first; heartbeats go there.
-  ServiceGroup(const ExecutorConfig& config, std::vector<bus::Participant*> participants, ExecutionTime execution);
+  ServiceGroup(const ExecutorConfig& config, std::vector<bus::Participant*> participants, Pacing pacing);
   ServiceGroup(const ServiceGroup&) = delete;
   ServiceGroup& operator=(const ServiceGroup&) = delete;
 
-  /// Before a run, or between ticks of a simulation. Throws BadInput on a bad schedule or a second service of one
-  /// name.
-  Entry& add(Service& service);
+  /// Before a run; between ticks of a simulation, where it is due from `at` on. Throws BadInput on a bad
+  /// schedule or a second service of one name.
+  Entry& add(Service& service, Pace at = Pace::zero());
   /// Between ticks: it steps no more, as if its process had died.
   void remove(const Service& service);
 
   /// Periodic services are first due at `at`; triggered ones have waited from then.
   void start(Pace at);
 
-  /// From here on only triggers wake the thread; other samples lie until a step takes them.
+  /// From here on samples lie until a step takes them, without waking the thread ...
+  void mute();
+  /// ... but those of triggers.
   void wake_by_triggers();
 
   /// Whether the entry is to step at `at`: its time has come, or its trigger has a sample that came since its
   /// last step began. Samples a service leaves in its trigger are not stepped for again. Real-time safe.
   bool due(Entry& entry, Pace at) noexcept;
-  /// Steps it, as module time `now`; returns when the step ended (omitted: `at`). Real-time safe if the service is.
+  /// Steps it, as module time `now`; returns when the step ended (simulated: `at`). Real-time safe if the service is.
   Pace step(Entry& entry, Pace at, TimePoint now) noexcept;
   /// Publishes a heartbeat of every service if it is time. Real-time safe.
   void beat_if_due(Pace at, TimePoint now) noexcept;
@@ -87,10 +89,9 @@ class ServiceGroup {
 
   ExecutorConfig config_;
   std::vector<bus::Participant*> participants_;
-  ExecutionTime execution_;
+  Pacing pacing_;
   std::vector<std::unique_ptr<Entry>> entries_;
   std::optional<bus::Writer<msg::Heartbeat>> heartbeat_;
-  Pace started_at_{};
   Pace next_heartbeat_ = Pace::max();
 };
 

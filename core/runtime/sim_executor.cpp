@@ -11,8 +11,13 @@ Pace to_pace(TimePoint t) { return t.time_since_epoch(); }
 
 }  // namespace
 
+SimModule::SimModule(const ExecutorConfig& config, std::vector<bus::Participant*> participants, const TimePoint& now)
+    : group_(config, std::move(participants), ServiceGroup::Pacing::simulated), now_(now) {
+  group_.start(to_pace(now_));
+}
+
 void SimModule::add(Service& service) {
-  group_.add(service);
+  group_.add(service, to_pace(now_));
   changed_ = true;
 }
 
@@ -39,8 +44,7 @@ SimExecutor::SimExecutor(const SimConfig& config, Plant& plant, std::function<vo
 }
 
 SimModule& SimExecutor::add_module(const ExecutorConfig& config, std::vector<bus::Participant*> participants) {
-  modules_.push_back(std::make_unique<SimModule>(config, std::move(participants)));
-  modules_.back()->group().start(to_pace(now_));
+  modules_.push_back(std::make_unique<SimModule>(config, std::move(participants), now_));
   return *modules_.back();
 }
 

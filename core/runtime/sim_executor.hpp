@@ -19,8 +19,8 @@ struct SimConfig {
 /// A module in simulation: its services, and how its clock runs beside the world's.
 class SimModule {
  public:
-  SimModule(const ExecutorConfig& config, std::vector<bus::Participant*> participants)
-      : group_(config, std::move(participants), ServiceGroup::ExecutionTime::omitted) {}
+  /// `now`: the simulation's time.
+  SimModule(const ExecutorConfig& config, std::vector<bus::Participant*> participants, const TimePoint& now);
 
   /// Before a run or between ticks; the first step is at the next tick at the earliest. The service outlives
   /// the module, or is removed first.
@@ -41,6 +41,7 @@ class SimModule {
  private:
   friend class SimExecutor;
   ServiceGroup group_;
+  const TimePoint& now_;
   Duration clock_offset_{};
   std::int64_t clock_drift_ppb_ = 0;
   bool changed_ = true;

@@ -20,6 +20,8 @@ class Sleeper {
   /// For waits where being a little late does not matter. True: woken.
   bool for_at_most(Duration timeout) noexcept;
 
+  bool stopped() const noexcept { return stop_.requested(); }
+
  private:
   bus::Waker& waker_;
   const StopFlag& stop_;
