@@ -23,11 +23,8 @@ void RotorActuator::step(const RotorSetpoint& command, bool armed, double dt_s) 
         std::clamp(finite_or(command.gimbal_rad[k], gimbal_rad_[k]), -rotor_->gimbal_rad_max, rotor_->gimbal_rad_max);
     gimbal_rad_[k] += std::clamp(share * (wanted_rad - gimbal_rad_[k]), -move_rad_max, move_rad_max);
   }
-}
-
-robot::Vector3 RotorActuator::direction_B() const {
   const auto [phi, theta] = gimbal_rad_;
-  return {std::sin(theta), -std::sin(phi) * std::cos(theta), std::cos(phi) * std::cos(theta)};
+  direction_B_ = {std::sin(theta), -std::sin(phi) * std::cos(theta), std::cos(phi) * std::cos(theta)};
 }
 
 double JointActuator::step(const JointSetpoint& command, bool powered, double position_rad, double dt_s) {

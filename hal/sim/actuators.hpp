@@ -25,12 +25,13 @@ class RotorActuator {
   double thrust_N() const { return thrust_N_; }
   const std::array<double, 2>& gimbal_rad() const { return gimbal_rad_; }
   /// Unit vector along the thrust, body axes: Rx(phi) Ry(theta) e_z.
-  robot::Vector3 direction_B() const;
+  const robot::Vector3& direction_B() const { return direction_B_; }
 
  private:
   const robot::RotorGeometry* rotor_;
   double thrust_N_;
   std::array<double, 2> gimbal_rad_{};
+  robot::Vector3 direction_B_ = robot::Vector3::UnitZ();
 };
 
 /// A dock joint's position servo: kp 120 Nm/rad on its own encoder, which may be off, reference

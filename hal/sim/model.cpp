@@ -25,6 +25,7 @@ constexpr const char* floor_contact =
 
 constexpr double tip_radius_m = 0.018;
 constexpr double foot_radius_m = 0.01;
+constexpr double guard_radius_m = 0.075;
 constexpr int cone_boxes = 12;
 
 /// Text with every digit of a double, whatever the process's locale.
@@ -102,12 +103,15 @@ std::string link_body(const robot::Airframe& airframe, std::size_t module, std::
   return text.str();
 }
 
-/// A foot under each rotor: three are a tripod, which stands still on any floor.
+/// What of a module can touch the floor: a foot under each rotor (three are a tripod, which stands still on
+/// any floor), and, should it fall over, the rotors' guards.
 std::string feet(const robot::Airframe& airframe) {
   std::ostringstream text = precise_text();
   for (const robot::RotorGeometry& rotor : airframe.rotors) {
     text << "<geom type='sphere' size='" << foot_radius_m << "' pos='"
-         << numbers({rotor.p_BR_m.x(), rotor.p_BR_m.y(), foot_radius_m - rest_height_m}) << "'" << foot_contact << "/>";
+         << numbers({rotor.p_BR_m.x(), rotor.p_BR_m.y(), foot_radius_m - rest_height_m}) << "'" << foot_contact
+         << "/><geom type='sphere' size='" << guard_radius_m << "' pos='" << numbers(rotor.p_BR_m) << "'"
+         << foot_contact << "/>";
   }
   return text.str();
 }

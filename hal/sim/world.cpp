@@ -11,7 +11,6 @@
 namespace eciton::hal::sim {
 namespace {
 
-using robot::Matrix3;
 using robot::Vector3;
 using robot::Wrench;
 
@@ -49,6 +48,7 @@ struct World::Impl {
   Impl(const WorldConfig& config_in, const robot::Airframe& airframe_in, const std::vector<ModuleStart>& starts);
 
   void step();
+  void read_motion();
   void update_air();
   Wrench jets_on(std::size_t i) const;
   double wake_deviation_on(std::size_t i) const;
@@ -63,7 +63,7 @@ struct World::Impl {
   std::vector<SimModule> modules;
   std::optional<Couplings> couplings;
   std::vector<Vector3> v_before;
-  std::vector<Matrix3> R_WB;  // at the beginning of the step
+  std::vector<robot::Pose> X_WB;  // at the beginning of the step
   Vector3 wind_W_N;
   TimePoint now;
   std::uint64_t steps = 0;
@@ -75,7 +75,7 @@ World::Impl::Impl(const WorldConfig& config_in, const robot::Airframe& airframe_
     : config(config_in),
       airframe(airframe_in),
       v_before(starts.size(), Vector3::Zero()),
-      R_WB(starts.size(), Matrix3::Identity()),
+      X_WB(starts.size()),
       wind_W_N(config_in.wind_N.data()),
       now(from_ns(static_cast<std::int64_t>(config_in.start_ns))) {
   check(airframe, starts);
@@ -93,6 +93,7 @@ World::Impl::Impl(const WorldConfig& config_in, const robot::Airframe& airframe_
   }
   couplings.emplace(world, config.break_what == "weld-off");
   mj_forward(world.model.get(), world.data.get());
+  read_motion();
   update_air();
   apply_forces();
   mj_forward(world.model.get(), world.data.get());
@@ -108,7 +109,7 @@ std::size_t World::Impl::index(std::uint32_t id) const {
 void World::Impl::step() {
   mjModel* m = world.model.get();
   mjData* d = world.data.get();
-  for (std::size_t i = 0; i < modules.size(); ++i) v_before[i] = modules[i].v_WB(d);
+  read_motion();
   mj_step1(m, d);
   std::fill_n(d->qfrc_applied, m->nv, 0.0);
   for (SimModule& module : modules) module.step_actuators(d);
@@ -118,16 +119,21 @@ void World::Impl::step() {
   mj_step2(m, d);
   ++steps;
   now += step_duration;
-  for (std::size_t i = 0; i < modules.size(); ++i) modules[i].step_sensors(now, d, v_before[i], R_WB[i]);
+  for (std::size_t i = 0; i < modules.size(); ++i) modules[i].step_sensors(now, d, v_before[i], X_WB[i].R);
   find_fault();
 }
 
-void World::Impl::apply_forces() {
-  mjData* d = world.data.get();
+void World::Impl::read_motion() {
   for (std::size_t i = 0; i < modules.size(); ++i) {
-    SimModule& module = modules[i];
-    R_WB[i] = module.X_WB(d).R;
-    module.apply(module.rotor_wrench_B_W(R_WB[i]) + module.air + module.external, R_WB[i], d);
+    X_WB[i] = modules[i].X_WB(world.data.get());
+    v_before[i] = modules[i].v_WB(world.data.get());
+  }
+}
+
+void World::Impl::apply_forces() {
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    const SimModule& module = modules[i];
+    module.apply(module.rotor_wrench_B_W(X_WB[i].R) + module.air + module.external, X_WB[i].R, world.data.get());
   }
 }
 
@@ -146,12 +152,11 @@ void World::Impl::update_air() {
 }
 
 double World::Impl::wake_deviation_on(std::size_t i) const {
-  const mjData* d = world.data.get();
   const double hover_N = airframe.hover_thrust_N() * static_cast<double>(airframe.rotors.size());
   double variance = 0;
   for (std::size_t j = 0; j < modules.size(); ++j) {
     if (j == i) continue;
-    const double distance_m = (modules[i].X_WB(d).p - modules[j].X_WB(d).p).norm();
+    const double distance_m = (X_WB[i].p - X_WB[j].p).norm();
     const double deviation_N = wake_deviation_N(distance_m, modules[j].thrust_N() / hover_N);
     variance += deviation_N * deviation_N;
   }
@@ -160,20 +165,19 @@ double World::Impl::wake_deviation_on(std::size_t i) const {
 
 /// The jets of all other modules' rotors on this one: on its middle and on each of its rotors' housings.
 Wrench World::Impl::jets_on(std::size_t i) const {
-  const mjData* d = world.data.get();
-  const robot::Pose X_WB = modules[i].X_WB(d);
+  const robot::Pose& X_WM = X_WB[i];
   Wrench sum;
   for (std::size_t j = 0; j < modules.size(); ++j) {
     if (j == i) continue;
-    const robot::Pose X_WN = modules[j].X_WB(d);
-    if ((X_WN.p - X_WB.p).squaredNorm() > 25.0) continue;  // a jet of 5 m length is down to 4 m/s
+    const robot::Pose& X_WN = X_WB[j];
+    if ((X_WN.p - X_WM.p).squaredNorm() > 25.0) continue;  // a jet of 5 m length is down to 4 m/s
     for (std::size_t k = 0; k < airframe.rotors.size(); ++k) {
       const RotorActuator& rotor = modules[j].rotors()[k];
       const JetSource jet{X_WN * airframe.rotors[k].p_BR_m, -(X_WN.R * rotor.direction_B()), rotor.thrust_N()};
-      sum.force += jet_force_N(jet, X_WB.p);
+      sum.force += jet_force_N(jet, X_WM.p);
       for (const robot::RotorGeometry& patch : airframe.rotors) {
-        const Vector3 lever = X_WB.R * patch.p_BR_m;
-        sum += robot::shift({jet_force_N(jet, X_WB.p + lever), Vector3::Zero()}, lever);
+        const Vector3 lever = X_WM.R * patch.p_BR_m;
+        sum += robot::shift({jet_force_N(jet, X_WM.p + lever), Vector3::Zero()}, lever);
       }
     }
   }
