@@ -53,6 +53,18 @@ bus::ParticipantConfig ModuleConfig::swarm_participant(const std::string& proces
   return participant;
 }
 
+void set_identity(ModuleConfig& config) {
+  config.estimation.module_id = config.id;
+  config.control.module_id = config.id;
+  config.control.wrench_rate_Hz = config.estimation.wrench_rate_Hz;
+  config.control.observer_gain_1_s = config.estimation.observer_gain_1_s;
+  config.docking.module_id = config.id;
+  config.joints.module_id = config.id;
+  config.radio.module_id = config.id;
+  config.radio.name = config.name;
+  config.radio.airframe = config.airframe;
+}
+
 Result<ModuleConfig> load_module_config(const std::vector<std::string>& files,
                                         const std::vector<std::string>& assignments) {
   ConfigTree tree;
@@ -72,6 +84,7 @@ Result<ModuleConfig> load_module_config(const std::vector<std::string>& files,
                  std::to_string(config.swarm_ring.domain) + "; the two rings need different domains"};
   }
   if (const Status status = check_vendors(config); !status) return status.error();
+  set_identity(config);
   return config;
 }
 
