@@ -12,8 +12,6 @@ namespace eciton::control {
 
 struct FlightReferenceConfig {
   double speed_m_s = 0.5;          // of a goto without one
-  double takeoff_m_s = 0.5;
-  double landing_m_s = 0.3;
   double track_hold_s = 0.2;       // a tracked reference older than this stands still
   robot::TrajectoryLimits limits;
 };
@@ -41,8 +39,8 @@ class FlightReference {
   /// Into a chain, without a jump: from the present reference, which fixes where this module sees the base,
   /// given the chain's joint angles (member by member).
   void join(const ChainPlace& place, std::span<const double> joint_rad, const robot::Pose& X_WB_base, double now_s);
-  /// In a chain: the base (as all members know it) moves to a goal pose of its M.
-  void move_base(const robot::Pose& X_WM_goal, double speed_m_s, double start_s, double now_s);
+  /// In a chain: the base (as all members know it) moves to a goal pose of its B.
+  void move_base(const robot::Pose& X_WB_goal, double speed_m_s, double start_s, double now_s);
   /// In a chain: the joints move; the reference follows.
   void morph(const robot::JointMotion& joints) { joints_ = joints; }
   /// Out of the chain, standing where the reference is now.
@@ -55,7 +53,7 @@ class FlightReference {
   const robot::JointMotion& joints() const { return joints_; }
 
  private:
-  enum class Kind { motion, track };
+  enum class Kind { motion, track, descend };
 
   robot::PoseReference own_part(double now_s) const;
 
@@ -68,7 +66,8 @@ class FlightReference {
 
   bool in_chain_ = false;
   ChainPlace place_;
-  robot::Pose own_frame_;           // this module's world as seen from the one the members share
+  robot::Vector3 offset_p_ = robot::Vector3::Zero();      // from what the shared base says to where this
+  robot::Matrix3 offset_R_ = robot::Matrix3::Identity();  // module sees itself, fixed when it joined
   robot::JointMotion joints_;
 };
 

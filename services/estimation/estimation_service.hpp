@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "core/bus/participant.hpp"
 #include "core/robot/actuator_lag.hpp"
@@ -45,13 +46,14 @@ class EstimationService final : public runtime::Service {
 
  private:
   void take_actuators() noexcept;
-  void take_chain() noexcept;
+  void take_chain(TimePoint now) noexcept;
   void take_sensors() noexcept;
   void observe(TimePoint now) noexcept;
   void publish_state(TimePoint now) noexcept;
   void publish_external_wrench(TimePoint now) noexcept;
   void publish_contact_wrench(TimePoint now) noexcept;
   bool free_flight() const;
+  std::span<const double> joint_angles() const { return std::span(joint_rad_).first(airframe_.joints.size()); }
   void report_mode(TimePoint now) noexcept;
 
   EstimationConfig config_;
@@ -64,13 +66,20 @@ class EstimationService final : public runtime::Service {
   std::array<robot::RotorOutput, robot::rotors_max> rotor_command_{};
   bool armed_ = false;
   std::array<double, robot::joints_max> joint_rad_{};
+  struct CentreOfMass {
+    robot::Vector3 p_WM = robot::Vector3::Zero();
+    robot::Vector3 v_WM = robot::Vector3::Zero();
+  };
+  Estimate estimate_;
+  CentreOfMass state_;
   robot::Wrench external_W_;        // about the composite centre of mass, bias removed
+  ContactWrench contact_;
+  msg::ExternalWrench own_;
 
   msg::ChainView view_;             // the active one
-  bool docking_contact_ = false;    // near enough to touch: the zero stays as it is
+  bool touching_ = false;           // or about to: the zero stays as it is
   std::array<msg::ExternalWrench, 16> heard_{};  // by place in the chain
   std::array<TimePoint, 16> heard_at_{};
-  bool zero_asked_ = false;
 
   TimePoint last_step_{};
   TimePoint wrench_due_{};

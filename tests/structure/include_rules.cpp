@@ -35,7 +35,9 @@ const std::vector<Rule>& rules() {
   }();
   static const std::vector<Rule> table{
       {std::regex("core/base/.*"), {"core/base/"}},
-      {std::regex("core/bus/vendors/([^/]+)/.*"), {"core/bus/vendors/$1/", "core/bus/*", "core/base/"}},
+      {std::regex("core/bus/vendors/[^/]+"), {"core/bus/vendors/*", "core/bus/*", "core/base/"}},
+      {std::regex("core/bus/vendors/([^/]+)/.*"),
+       {"core/bus/vendors/$1/", "core/bus/vendors/*", "core/bus/*", "core/base/"}},
       {std::regex("core/bus/.*"), {"core/bus/*", "core/base/"}},
       {std::regex("core/runtime/.*"), {"core/runtime/", "core/bus/*", "core/base/", "idl/"}},
       {std::regex("core/chain/.*"), {"core/chain/", "core/base/"}, true},

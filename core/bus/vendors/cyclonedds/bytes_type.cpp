@@ -140,6 +140,7 @@ ddsi_serdata* lend(const ddsi_serdata* serdata, std::size_t offset, std::size_t 
 void take_back(ddsi_serdata* serdata, const ddsrt_iovec_t*) { ddsi_serdata_unref(serdata); }
 
 bool to_sample(const ddsi_serdata* serdata, void* sample, void**, void*) {
+  if (sample == nullptr) return false;
   *static_cast<Bytes*>(sample) = {as_bytes(serdata)->cdr(), as_bytes(serdata)->size};
   return true;
 }
@@ -188,13 +189,17 @@ void zero_samples(const ddsi_sertype*, void* samples, std::size_t count) {
   std::fill_n(static_cast<Bytes*>(samples), count, Bytes{});
 }
 
-void realloc_samples(void** samples, const ddsi_sertype*, void* old, std::size_t, std::size_t count) {
-  auto* block = static_cast<Bytes*>(dds_realloc(old, count * sizeof(Bytes)));
-  for (std::size_t k = 0; k < count; ++k) samples[k] = block + k;
+// The vendor asks for samples of its own only to show them to the reader's filter, one at a time.
+void realloc_samples(void** samples, const ddsi_sertype*, void* old, std::size_t old_count, std::size_t count) {
+  auto* block = static_cast<Bytes*>(BytesPool::instance().acquire(count * sizeof(Bytes)));
+  if (block != nullptr) std::fill_n(block, count, Bytes{});
+  if (block != nullptr && old != nullptr) std::copy_n(static_cast<Bytes*>(old), std::min(old_count, count), block);
+  if (old != nullptr) BytesPool::release(old);
+  for (std::size_t k = 0; k < count; ++k) samples[k] = block == nullptr ? nullptr : block + k;
 }
 
 void free_samples(const ddsi_sertype*, void** samples, std::size_t count, dds_free_op_t operation) {
-  if (count > 0 && (operation & DDS_FREE_ALL_BIT) != 0) dds_free(samples[0]);
+  if (count > 0 && samples[0] != nullptr && (operation & DDS_FREE_ALL_BIT) != 0) BytesPool::release(samples[0]);
 }
 
 bool equal_types(const ddsi_sertype* a, const ddsi_sertype* b) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/bus/vendors/cyclonedds/bytes_pool.hpp"
+#include "core/bus/vendors/cyclonedds/log.hpp"
 #include "core/bus/vendors/cyclonedds/vendor.hpp"
 #include "core/bus/vendors/network.hpp"
 
@@ -52,6 +53,8 @@ std::string configuration(const Settings& settings) {
       << "ms</LeaseDuration></Discovery><Internal>"
       // One receive thread, so that a scheduling policy set by the creating thread covers all of them.
       << "<MultipleReceiveThreads>false</MultipleReceiveThreads>"
+      // Fast DDS reads the key of what Cyclone disposes (endpoints that go, above all) from the key hash only.
+      << "<GenerateKeyhash>true</GenerateKeyhash>"
       // A reliable writer being deleted waits this long for acknowledgements (default 1 s).
       << "<WriterLingerDuration>20ms</WriterLingerDuration>"
       // The defaults (100 ms doubling to 8 s, 100 ms, 3 s) leave gaps of seconds after a loss; Fast DDS is set to the same.
@@ -98,6 +101,7 @@ Result<SharedDomain> SharedDomain::acquire(const eciton_participant_config& conf
     ++found->second.participants;
     return SharedDomain(config.domain);
   }
+  if (domains.empty()) limit_log();
   const dds_entity_t entity = dds_create_domain(config.domain, configuration(*asked).c_str());
   if (entity < 0) {
     return Error{"participant \"" + std::string(config.name) + "\": Cyclone DDS cannot open domain " +
@@ -115,7 +119,9 @@ SharedDomain::~SharedDomain() {
   if (--found->second.participants > 0) return;
   dds_delete(found->second.entity);
   domains.erase(found);
-  if (domains.empty()) BytesPool::instance().trim();
+  if (!domains.empty()) return;
+  BytesPool::instance().trim();
+  restore_log();
 }
 
 }  // namespace eciton::bus::cyclonedds

@@ -125,7 +125,7 @@ Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, co
   if (const eciton::Status checked = eciton::bus::vendors::check_endpoint(topic, type, qos); !checked) {
     return checked.error();
   }
-  std::unique_ptr<eciton_reader> created(new eciton_reader(qos.instances_max, wake));
+  std::unique_ptr<eciton_reader> created(new eciton_reader(type, qos.instances_max, wake));
   if (!created->memory_.acquire(type, qos)) return cyclonedds::no_memory(participant, topic, qos);
   const Result<dds_entity_t> on = cyclonedds::create_topic(participant, topic, type);
   if (!on) return on.error();
@@ -133,8 +133,8 @@ Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, co
   // Not by RESOURCE_LIMITS: a reliable reader that refuses a sample for want of instances has it offered again and
   // again by the receive thread, which delivers nothing else meanwhile. A filtered sample is gone.
   dds_topic_filter filter{};
-  filter.mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG;
-  filter.f.sampleinfo_arg = &eciton_reader::admit;
+  filter.mode = DDS_TOPIC_FILTER_SAMPLE_ARG;
+  filter.f.sample_arg = &eciton_reader::admit;
   filter.arg = created.get();
   dds_set_topic_filter_extended(*on, &filter);
   const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(dds_create_listener(created.get()),
@@ -147,10 +147,12 @@ Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, co
   return created.release();
 }
 
-bool eciton_reader::admit(const dds_sample_info_t* info, void* self) {
-  eciton::bus::vendors::InstanceKey key{};
-  std::memcpy(key.data(), &info->instance_handle, sizeof info->instance_handle);
-  return static_cast<eciton_reader*>(self)->keys_.admit(key);
+bool eciton_reader::admit(const void* sample, void* self) {
+  auto& reader = *static_cast<eciton_reader*>(self);
+  const auto* bytes = static_cast<const cyclonedds::Bytes*>(sample);
+  eciton::bus::vendors::InstanceKey key;
+  return eciton::bus::vendors::key_hash_of(reader.type_, bytes->cdr, bytes->size, false, key.data()) &&
+         reader.keys_.admit(key);
 }
 
 void eciton_reader::on_data_available(dds_entity_t, void* self) {

@@ -84,10 +84,12 @@ struct eciton_reader {
   std::uint32_t matched() const;
 
  private:
-  eciton_reader(std::uint32_t keys_max, eciton_wake wake) : keys_(keys_max), wake_(wake) {}
+  eciton_reader(const eciton_type& type, std::uint32_t keys_max, eciton_wake wake)
+      : type_(type), keys_(keys_max), wake_(wake) {}
   static void on_data_available(dds_entity_t reader, void* self);
-  static bool admit(const dds_sample_info_t* info, void* self);
+  static bool admit(const void* sample, void* self);
 
+  eciton_type type_;
   eciton::bus::vendors::InstanceSet keys_;  // used under the lock of the vendor's history
   eciton_wake wake_;
   eciton::bus::cyclonedds::Reservation memory_;

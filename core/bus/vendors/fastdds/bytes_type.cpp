@@ -46,11 +46,14 @@ void* BytesType::createData() { return new Bytes; }
 void BytesType::deleteData(void* data) { delete static_cast<Bytes*>(data); }
 
 bool BytesType::getKey(void* data, InstanceHandle_t* handle, bool /*force_md5*/) {
+  if (type_.key_size == 0) return false;
   const auto* bytes = static_cast<const Bytes*>(data);
   std::uint8_t hash[16];
-  if (type_.key_size == 0) return false;
-  if (!vendors::well_formed(type_, bytes->cdr, bytes->size)) return false;
-  if (!vendors::key_hash_of(type_, bytes->cdr, bytes->size, false, hash)) return false;
+  const bool good = vendors::well_formed(type_, bytes->cdr, bytes->size) &&
+                    vendors::key_hash_of(type_, bytes->cdr, bytes->size, false, hash);
+  // A sample whose key cannot be told would stay in the reader's history for ever and fill it. All such share one
+  // instance of their own, and take drops them.
+  if (!good) std::memset(hash, 0xff, sizeof hash);
   std::memcpy(handle->value, hash, sizeof hash);
   return true;
 }

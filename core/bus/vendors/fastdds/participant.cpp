@@ -13,7 +13,7 @@
 #include "core/bus/vendors/network.hpp"
 #include "core/bus/vendors/request.hpp"
 
-namespace dds = eprosima::fastdds::dds;
+namespace fast = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 using eciton::Error;
 using eciton::Result;
@@ -46,9 +46,9 @@ void set_discovery(rtps::BuiltinAttributes& builtin, const std::string& address,
   for (const std::string& peer : peers) builtin.initialPeersList.push_back(locator(peer));
 }
 
-dds::DomainParticipantQos participant_qos(const eciton_participant_config& config, const std::string& address,
+fast::DomainParticipantQos participant_qos(const eciton_participant_config& config, const std::string& address,
                                           const std::vector<std::string>& peers) {
-  dds::DomainParticipantQos qos;
+  fast::DomainParticipantQos qos;
   qos.name(config.name);
   qos.transport().use_builtin_transports = false;  // these would bring shared memory and every interface
   const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -84,15 +84,15 @@ Result<eciton_participant*> eciton_participant::create(const eciton_participant_
   if (!peers) return peers.error();
   ignore_environment();
   auto created = std::make_unique<eciton_participant>();
-  created->participant = dds::DomainParticipantFactory::get_instance()->create_participant(
+  created->participant = fast::DomainParticipantFactory::get_instance()->create_participant(
       config.domain, participant_qos(config, *address, *peers));
   if (created->participant == nullptr) {
     return Error{"participant \"" + std::string(config.name) + "\": Fast DDS cannot open domain " +
                  std::to_string(config.domain) + " on " + config.network_interface + " (" + *address +
                  "); are its ports from " + std::to_string(7400 + 250 * config.domain) + " on taken?"};
   }
-  created->publisher = created->participant->create_publisher(dds::PublisherQos());
-  created->subscriber = created->participant->create_subscriber(dds::SubscriberQos());
+  created->publisher = created->participant->create_publisher(fast::PublisherQos());
+  created->subscriber = created->participant->create_subscriber(fast::SubscriberQos());
   if (created->publisher == nullptr || created->subscriber == nullptr) {
     return Error{created->label() + ": Fast DDS cannot create a publisher and a subscriber"};
   }
@@ -102,7 +102,7 @@ Result<eciton_participant*> eciton_participant::create(const eciton_participant_
 eciton_participant::~eciton_participant() {
   if (participant == nullptr) return;
   participant->delete_contained_entities();
-  dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+  fast::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
 std::string eciton_participant::label() const {
@@ -110,10 +110,10 @@ std::string eciton_participant::label() const {
          std::to_string(participant->get_domain_id());
 }
 
-Result<dds::Topic*> eciton_participant::topic(const char* name, const eciton_type& type) {
-  dds::TypeSupport known = participant->find_type(type.name);
+Result<fast::Topic*> eciton_participant::topic(const char* name, const eciton_type& type) {
+  fast::TypeSupport known = participant->find_type(type.name);
   if (known.empty()) {
-    known = dds::TypeSupport(new eciton::bus::fastdds::BytesType(type));
+    known = fast::TypeSupport(new eciton::bus::fastdds::BytesType(type));
     if (known.register_type(participant) != ReturnCode_t::RETCODE_OK) {
       return Error{label() + ": Fast DDS refuses the type " + type.name};
     }
@@ -121,11 +121,11 @@ Result<dds::Topic*> eciton_participant::topic(const char* name, const eciton_typ
   if (known->m_typeSize != type.size_max || known->m_isGetKeyDefined != (type.key_size > 0)) {
     return Error{label() + ": type " + type.name + " was declared before with another size or key"};
   }
-  if (dds::TopicDescription* existing = participant->lookup_topicdescription(name)) {
-    if (existing->get_type_name() == type.name) return static_cast<dds::Topic*>(existing);
+  if (fast::TopicDescription* existing = participant->lookup_topicdescription(name)) {
+    if (existing->get_type_name() == type.name) return static_cast<fast::Topic*>(existing);
     return Error{label() + ": topic \"" + name + "\" has type " + existing->get_type_name() + ", not " + type.name};
   }
-  dds::Topic* created = participant->create_topic(name, type.name, dds::TopicQos());
+  fast::Topic* created = participant->create_topic(name, type.name, fast::TopicQos());
   if (created == nullptr) return Error{label() + ": Fast DDS cannot create topic \"" + std::string(name) + "\""};
   return created;
 }

@@ -6,7 +6,7 @@
 #include "core/bus/vendors/fastdds/endpoints.hpp"
 #include "core/bus/vendors/request.hpp"
 
-namespace dds = eprosima::fastdds::dds;
+namespace fast = eprosima::fastdds::dds;
 using eciton::Error;
 using eciton::Result;
 using eciton::bus::fastdds::Bytes;
@@ -21,9 +21,9 @@ constexpr std::uint32_t kLoansMax = 32;
 // burst of losses makes. Payloads are allocated only when used.
 constexpr std::uint32_t kSamplesSpare = kLoansMax + 224;
 
-dds::DataReaderQos reader_qos(const eciton_qos& asked) {
-  dds::DataReaderQos qos;
-  eciton::bus::fastdds::set_common_qos(qos, asked, kSamplesSpare);
+fast::DataReaderQos reader_qos(const eciton_qos& asked) {
+  fast::DataReaderQos qos;
+  eciton::bus::fastdds::set_common_qos(qos, asked, 1, kSamplesSpare);
   qos.reliable_reader_qos().times.heartbeatResponseDelay = eprosima::fastrtps::Duration_t(0, 0);
   qos.reader_resource_limits().max_samples_per_read = static_cast<std::int32_t>(kLoansMax);
   qos.reader_resource_limits().sample_infos_allocation.initial = kLoansMax;
@@ -37,11 +37,11 @@ Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, co
   if (const eciton::Status checked = eciton::bus::vendors::check_endpoint(topic, type, qos); !checked) {
     return checked.error();
   }
-  const Result<dds::Topic*> on = participant.topic(topic, type);
+  const Result<fast::Topic*> on = participant.topic(topic, type);
   if (!on) return on.error();
   std::unique_ptr<eciton_reader> created(new eciton_reader(participant, type, wake));
   created->reader_ = participant.subscriber->create_datareader(
-      *on, reader_qos(qos), created.get(), dds::StatusMask::data_available() << dds::StatusMask::subscription_matched());
+      *on, reader_qos(qos), created.get(), fast::StatusMask::data_available() << fast::StatusMask::subscription_matched());
   if (created->reader_ == nullptr) {
     return Error{participant.label() + ": Fast DDS cannot create a reader of topic \"" + topic + "\""};
   }
@@ -64,7 +64,7 @@ std::uint32_t eciton_reader::take(std::uint32_t count_max, eciton_sink sink, voi
 std::uint32_t eciton_reader::take_some(std::uint32_t count_max, eciton_sink sink, void* context,
                                        std::uint32_t& given) {
   BytesSeq samples;
-  dds::SampleInfoSeq infos;
+  fast::SampleInfoSeq infos;
   if (reader_->take(samples, infos, static_cast<std::int32_t>(count_max)) != ReturnCode_t::RETCODE_OK) return 0;
   const auto taken = static_cast<std::uint32_t>(samples.length());
   for (std::int32_t k = 0; k < samples.length(); ++k) {
@@ -81,11 +81,11 @@ std::uint32_t eciton_reader::take_some(std::uint32_t count_max, eciton_sink sink
   return taken;
 }
 
-void eciton_reader::on_data_available(dds::DataReader*) {
+void eciton_reader::on_data_available(fast::DataReader*) {
   if (wake_.signal != nullptr) wake_.signal(wake_.context);
 }
 
-void eciton_reader::on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) {
+void eciton_reader::on_subscription_matched(fast::DataReader*, const fast::SubscriptionMatchedStatus& status) {
   if (participant_.owns(status.last_publication_handle)) return;
   matched_.fetch_add(static_cast<std::uint32_t>(status.current_count_change), std::memory_order_relaxed);
 }

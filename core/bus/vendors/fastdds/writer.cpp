@@ -3,16 +3,16 @@
 #include "core/bus/vendors/fastdds/endpoints.hpp"
 #include "core/bus/vendors/request.hpp"
 
-namespace dds = eprosima::fastdds::dds;
+namespace fast = eprosima::fastdds::dds;
 using eciton::Error;
 using eciton::Result;
 
 namespace {
 
-dds::DataWriterQos writer_qos(const eciton_qos& asked) {
-  dds::DataWriterQos qos;
-  eciton::bus::fastdds::set_common_qos(qos, asked, 0);
-  qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+fast::DataWriterQos writer_qos(const eciton_qos& asked) {
+  fast::DataWriterQos qos;
+  eciton::bus::fastdds::set_common_qos(qos, asked, 0, 0);
+  qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
   // At the default of 3 s a late joiner, or one that lost the last sample, waits as long.
   qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(0, 50'000'000);
   qos.reliable_writer_qos().times.nackResponseDelay = eprosima::fastrtps::Duration_t(0, 0);
@@ -26,11 +26,11 @@ Result<eciton_writer*> eciton_writer::create(eciton_participant& participant, co
   if (const eciton::Status checked = eciton::bus::vendors::check_endpoint(topic, type, qos); !checked) {
     return checked.error();
   }
-  const Result<dds::Topic*> on = participant.topic(topic, type);
+  const Result<fast::Topic*> on = participant.topic(topic, type);
   if (!on) return on.error();
   std::unique_ptr<eciton_writer> created(new eciton_writer(participant, type));
   created->writer_ = participant.publisher->create_datawriter(*on, writer_qos(qos), created.get(),
-                                                              dds::StatusMask::publication_matched());
+                                                              fast::StatusMask::publication_matched());
   if (created->writer_ == nullptr) {
     return Error{participant.label() + ": Fast DDS cannot create a writer of topic \"" + topic + "\""};
   }
@@ -49,7 +49,7 @@ bool eciton_writer::write(const std::uint8_t* cdr, std::uint32_t size) {
   return writer_->write(&bytes);
 }
 
-void eciton_writer::on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) {
+void eciton_writer::on_publication_matched(fast::DataWriter*, const fast::PublicationMatchedStatus& status) {
   if (participant_.owns(status.last_subscription_handle)) return;
   matched_.fetch_add(static_cast<std::uint32_t>(status.current_count_change), std::memory_order_relaxed);
 }

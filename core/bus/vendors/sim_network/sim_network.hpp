@@ -81,7 +81,7 @@ class [[gnu::visibility("default")]] Network {
   Statistics statistics(std::string_view from, std::string_view to) const;
   /// Pairs of endpoints of one topic that differ in type or key, or whose QoS does not fit.
   std::uint64_t mismatched() const;
-  std::uint64_t writes_refused() const;  // too large, malformed key, more keys than the writer's bound, or no slot
+  std::uint64_t writes_refused() const;  // malformed, more keys than the writer's bound, or no slot
 
   Medium& medium() { return *medium_; }
 

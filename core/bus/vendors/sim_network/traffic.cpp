@@ -20,8 +20,9 @@ std::int64_t Medium::now_ns() const {
 
 bool Medium::write(Writer& writer, std::span<const std::uint8_t> cdr) {
   KeyHash key{};
+  // Plain CDR of either byte order; the other vendors' plugins let pass the same.
   const bool well_formed =
-      cdr.size() >= 4 && cdr.size() <= writer.type.size_max &&
+      cdr.size() >= 4 && cdr.size() <= writer.type.size_max && cdr[0] == 0 && cdr[1] <= 1 &&
       (writer.type.key_size == 0 ||
        writer.type.key_hash(cdr.data(), static_cast<std::uint32_t>(cdr.size()), 0, key.data()) != 0);
   const std::scoped_lock lock(mutex_);
