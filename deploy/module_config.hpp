@@ -90,6 +90,9 @@ struct ModuleConfig {
   bus::ParticipantConfig swarm_participant(const std::string& process) const;
 };
 
+/// The domain of a module's own ring unless its config names another.
+constexpr std::uint32_t module_ring_domain(std::uint32_t module_id) { return 10 + module_id; }
+
 /// Tells every part of the config whose it is, from `id` and `name`.
 void set_identity(ModuleConfig& config);
 
