@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
 #include "core/runtime/service.hpp"
 #include "idl/topics.hpp"
