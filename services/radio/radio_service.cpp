@@ -121,20 +121,20 @@ void RadioService::forward_in(Route& route) noexcept {
 
 void RadioService::watch_own_module() noexcept {
   while (const auto state = docking_state_.take()) {
-    const bool own = state->module_id == config_.module_id;
-    const bool names_us = state->peer_id == config_.module_id && state->role == msg::DockingRole::follower;
-    if (own) docking_ = state->phase != msg::DockingPhase::idle;
+    const bool own = state->value.module_id == config_.module_id;
+    const bool names_us = state->value.peer_id == config_.module_id && state->value.role == msg::DockingRole::follower;
+    if (own) docking_ = state->value.phase != msg::DockingPhase::idle;
     // A follower that approaches us hears our wrench before our own docking service has noticed it.
-    if (names_us) courted_ = state->phase != msg::DockingPhase::idle;
+    if (names_us) courted_ = state->value.phase != msg::DockingPhase::idle;
   }
   while (const auto view = chain_view_.take()) {
-    if (view->module_id == config_.module_id) chained_ = view->members.size() > 1 || view->epoch != 0;
+    if (view->value.module_id == config_.module_id) chained_ = view->value.members.size() > 1 || view->value.epoch != 0;
   }
   while (const auto state = module_state_.take()) {
-    if (state->module_id == config_.module_id) beacon_.estimator_mode = state->mode;
+    if (state->value.module_id == config_.module_id) beacon_.estimator_mode = state->value.mode;
   }
   while (const auto beat = heartbeat_.take()) {
-    if (beat->module_id == config_.module_id && beat->service == "control") beacon_.flight_mode = beat->flight_mode;
+    if (beat->value.module_id == config_.module_id && beat->value.service == "control") beacon_.flight_mode = beat->value.flight_mode;
   }
   const bool was_near = near_;
   near_ = docking_ || courted_ || chained_;
