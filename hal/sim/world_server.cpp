@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "core/base/wall_clock.hpp"
+
 namespace eciton::hal::sim {
 namespace {
 
@@ -13,14 +15,8 @@ constexpr Duration stop_check = 100ms;  // how long a wait may hide a call of st
 /// Behind by more than this, the wall-clock world jumps instead of catching up.
 constexpr Duration catch_up_max = 1s;
 
-std::int64_t monotonic_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return t.tv_sec * 1'000'000'000L + t.tv_nsec;
-}
-
-void sleep_until_ns(std::int64_t time_ns) {
-  const timespec t{.tv_sec = time_ns / 1'000'000'000, .tv_nsec = time_ns % 1'000'000'000};
+void sleep_until(Duration monotonic) {
+  const timespec t{.tv_sec = monotonic / 1s, .tv_nsec = (monotonic % 1s).count()};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) != 0) {
   }
 }
@@ -121,9 +117,9 @@ Status WorldServer::run_lockstep(TimePoint until) {
 }
 
 Status WorldServer::wait_for_hosts() {
-  const std::int64_t deadline_ns = monotonic_ns() + config_.join_timeout.count();
+  const Duration deadline = monotonic_now() + config_.join_timeout;
   while (!stopping_ && hosts_connected() < hosts_.size()) {
-    if (monotonic_ns() > deadline_ns) {
+    if (monotonic_now() > deadline) {
       return Error{"no hardware host came within " + std::to_string(to_s(config_.join_timeout)) + " s for " +
                    absent([](const Host& host, std::uint64_t) { return !host.socket.is_open(); }) +
                    "; start one that connects to " + config_.path};
@@ -135,7 +131,7 @@ Status WorldServer::wait_for_hosts() {
 
 Status WorldServer::wait_for_answers() {
   const auto is_missing = [](const Host& host, std::uint64_t tick) { return host.answered_tick != tick; };
-  const std::int64_t deadline_ns = monotonic_ns() + config_.stall_timeout.count();
+  const Duration deadline = monotonic_now() + config_.stall_timeout;
   while (!stopping_) {
     bool waiting = false, gone = false;
     for (const Host& host : hosts_) {
@@ -144,14 +140,14 @@ Status WorldServer::wait_for_answers() {
       gone = gone || !host.socket.is_open();
     }
     if (!waiting) return ok();
-    const std::string when = " at tick " + std::to_string(tick_);
+    const auto when = [&] { return " at tick " + std::to_string(tick_); };
     if (gone) {
-      return Error{"lost its hardware host" + when + ": " + absent([](const Host& host, std::uint64_t) {
+      return Error{"lost a hardware host" + when() + ": " + absent([](const Host& host, std::uint64_t) {
                      return !host.socket.is_open();
                    })};
     }
-    if (monotonic_ns() > deadline_ns) {
-      return Error{"no actuator frame within " + std::to_string(to_s(config_.stall_timeout)) + " s" + when + " from " +
+    if (monotonic_now() > deadline) {
+      return Error{"no actuator frame within " + std::to_string(to_s(config_.stall_timeout)) + " s" + when() + " from " +
                    absent(is_missing)};
     }
     pump(stop_check);
@@ -160,25 +156,25 @@ Status WorldServer::wait_for_answers() {
 }
 
 Status WorldServer::run_wall(TimePoint until) {
-  std::int64_t due_ns = monotonic_ns();
-  const std::int64_t tick_ns = config_.tick.count();
+  Duration due = monotonic_now();
   send_sensors();
   while (!stopping_ && world_.now() + config_.tick <= until) {
-    due_ns += tick_ns;
-    sleep_until_ns(due_ns);
-    std::int64_t passed = 1 + std::max<std::int64_t>(0, (monotonic_ns() - due_ns) / tick_ns);
-    stats_.missed_ticks += static_cast<std::uint64_t>(passed - 1);
-    due_ns += (passed - 1) * tick_ns;
-    const Duration left = until - world_.now();
-    passed = std::min<std::int64_t>(passed, left / config_.tick);
-    if (passed * config_.tick > catch_up_max) {
-      world_.skip(passed * config_.tick - catch_up_max);
-      passed = catch_up_max / config_.tick;
-    }
+    due += config_.tick;
+    sleep_until(due);
+    const std::int64_t missed = std::max(Duration::zero(), monotonic_now() - due) / config_.tick;
+    stats_.missed_ticks += static_cast<std::uint64_t>(missed);
+    due += missed * config_.tick;
     pump(Duration::zero());
     watch();
     hand_over_answers();
-    step(passed * config_.tick);
+    // Ticks missed are made up for, so that the world's time stays the wall's.
+    Duration ahead = std::min((1 + missed) * config_.tick, until - world_.now());
+    ahead -= ahead % config_.tick;
+    if (ahead > catch_up_max) {
+      world_.skip(ahead - catch_up_max);
+      ahead = catch_up_max;
+    }
+    step(ahead);
     if (world_.fault()) return *world_.fault();
     send_sensors();
   }
@@ -187,11 +183,11 @@ Status WorldServer::run_wall(TimePoint until) {
 
 /// Counts late answers, and stands in for the flight board's link watchdog.
 void WorldServer::watch() {
-  const std::int64_t now_ns = monotonic_ns();
+  const Duration now = monotonic_now();
   for (Host& host : hosts_) {
     if (!host.alive) continue;
     if (host.answered_tick != tick_) ++stats_.late_answers;
-    if (now_ns - host.heard_ns <= config_.watchdog.count()) continue;
+    if (now - host.heard <= config_.watchdog) continue;
     world_.cut(host.module);
     host.alive = false;
     ++stats_.cuts;

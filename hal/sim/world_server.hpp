@@ -67,7 +67,7 @@ class WorldServer {
     Actuators answer;
     bool fresh = false;           // `answer` has not been handed to the world yet
     bool alive = false;           // has a host whose watchdog has not run out
-    std::int64_t heard_ns = 0;    // monotonic
+    Duration heard{};             // monotonic time of its last word
     std::string left;             // why its host is gone, if it is
   };
 
@@ -83,7 +83,7 @@ class WorldServer {
 
   void pump(Duration timeout);
   void accept_all();
-  void greet(PacketSocket socket, const PacketSocket::Received& received);
+  void greet(PacketSocket& stranger, const PacketSocket::Received& received);
   std::string objection(const Hello& hello);
   void drain(Host& host);
   void drop(Host& host, std::string reason);

@@ -1,11 +1,11 @@
 // Who is connected to a served world: greeting, answers, departures.
 #include <poll.h>
 #include <sys/socket.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
 
+#include "core/base/wall_clock.hpp"
 #include "hal/sim/world_server.hpp"
 
 namespace eciton::hal::sim {
@@ -14,12 +14,6 @@ namespace {
 constexpr std::size_t strangers_max = 32;
 
 using What = PacketSocket::Received::What;
-
-std::int64_t monotonic_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return t.tv_sec * 1'000'000'000L + t.tv_nsec;
-}
 
 }  // namespace
 
@@ -32,7 +26,7 @@ void WorldServer::pump(Duration timeout) {
   for (const Host& host : hosts_) {
     if (host.socket.is_open()) entries[count++] = {.fd = host.socket.fd(), .events = POLLIN, .revents = 0};
   }
-  const timespec wait{.tv_sec = timeout.count() / 1'000'000'000, .tv_nsec = timeout.count() % 1'000'000'000};
+  const timespec wait{.tv_sec = timeout / 1s, .tv_nsec = (timeout % 1s).count()};
   if (ppoll(entries.data(), count, &wait, nullptr) <= 0) return;
   // Departures before arrivals: a host that died and came back is no duplicate of itself.
   for (Host& host : hosts_) drain(host);
@@ -48,20 +42,21 @@ void WorldServer::accept_all() {
   for (PacketSocket& stranger : strangers_) {
     const PacketSocket::Received received = stranger.receive();
     if (received.what == What::nothing) continue;
-    if (received.what == What::message) greet(std::move(stranger), received);
+    if (received.what == What::message) greet(stranger, received);
     stranger.close();
   }
   std::erase_if(strangers_, [](const PacketSocket& stranger) { return !stranger.is_open(); });
 }
 
-void WorldServer::greet(PacketSocket socket, const PacketSocket::Received& received) {
-  const auto hello = received.type == MessageType::hello ? socket.as<Hello>(received) : std::nullopt;
+/// Makes the stranger a module's host, or tells it why not.
+void WorldServer::greet(PacketSocket& stranger, const PacketSocket::Received& received) {
+  const auto hello = received.type == MessageType::hello ? stranger.as<Hello>(received) : std::nullopt;
   const std::string reason = hello ? objection(*hello) : "the first message must be a Hello";
   if (!reason.empty()) {
     if (!hello) ++stats_.bad_messages;
     Refused refused;
     refused.reason.assign(reason);
-    socket.send(refused);
+    stranger.send(refused);
     return;
   }
   Host& host = *std::find_if(hosts_.begin(), hosts_.end(), [&](const Host& h) { return h.module == hello->module_id; });
@@ -69,12 +64,12 @@ void WorldServer::greet(PacketSocket socket, const PacketSocket::Received& recei
   welcome.pace = config_.pace;
   welcome.tick_ns = config_.tick.count();
   welcome.now = world_.now();
-  if (!socket.send(welcome)) return;
-  host.socket = std::move(socket);
+  if (!stranger.send(welcome)) return;
+  host.socket = std::move(stranger);
   host.left.clear();
   host.fresh = false;
   host.answered_tick = tick_;  // it owes nothing for a tick it has not seen
-  host.heard_ns = monotonic_ns();
+  host.heard = monotonic_now();
 }
 
 /// Why this Hello cannot be accepted; empty when it can.
@@ -116,7 +111,7 @@ void WorldServer::drain(Host& host) {
     host.answered_tick = answer->tick;
     host.fresh = true;
     host.alive = true;
-    host.heard_ns = monotonic_ns();
+    host.heard = monotonic_now();
   }
 }
 

@@ -22,19 +22,17 @@ struct ControlConfig {
   std::uint32_t module_id = 0;
   double period_s = 0.002;             // its own pace, where states come slower
   std::string law = "local";
-  double wrench_rate_Hz = 100;         // as estimation publishes them
-  double observer_gain_1_s = 10;       // of estimation's observer: the law's rate follows from it
   bool disturbance_feedback = true;    // the observer's wrench fed back in free flight
   double takeoff_m_s = 0.5;
   double landing_m_s = 0.3;
   double speed_m_s = 0.5;
+  double wrench_rate_Hz = 100;         // as estimation's config says
+  double observer_gain_1_s = 10;       // as estimation's config says: the law's rate follows from it
 
   template <class V>
   void visit_fields(V& v) {
     v("period_s", period_s, in_range(0.001, 0.02));
     v("law", law, one_of({"none", "paper", "local"}));
-    v("wrench_rate_Hz", wrench_rate_Hz, in_range(10, 500));
-    v("observer_gain_1_s", observer_gain_1_s, in_range(0.5, 50));
     v("disturbance_feedback", disturbance_feedback);
     v("takeoff_m_s", takeoff_m_s, in_range(0.05, 2));
     v("landing_m_s", landing_m_s, in_range(0.05, 1));

@@ -38,9 +38,9 @@ class FlightReference {
 
   /// Into a chain, without a jump: from the present reference, which fixes where this module sees the base,
   /// given the chain's joint angles (member by member).
-  void join(const ChainPlace& place, std::span<const double> joint_rad, const robot::Pose& X_WB_base, double now_s);
-  /// In a chain: the base (as all members know it) moves to a goal pose of its B.
-  void move_base(const robot::Pose& X_WB_goal, double speed_m_s, double start_s, double now_s);
+  void join(const ChainPlace& place, std::span<const double> joint_rad, const robot::Pose& X_WM_base, double now_s);
+  /// In a chain: the base (as all members know it) moves to a goal pose of its M.
+  void move_base(const robot::Pose& X_WM_goal, double speed_m_s, double start_s, double now_s);
   /// In a chain: the joints move; the reference follows.
   void morph(const robot::JointMotion& joints) { joints_ = joints; }
   /// Out of the chain, standing where the reference is now.
@@ -60,7 +60,7 @@ class FlightReference {
   robot::Airframe airframe_;
   FlightReferenceConfig config_;
   Kind kind_ = Kind::motion;
-  robot::PoseMotion motion_;        // apart: of M; in a chain: of the base's B, as all members know it
+  robot::PoseMotion motion_;        // apart: of M; in a chain: of the base's M, as all members know it
   robot::PoseReference tracked_;
   double tracked_s_ = 0;
 

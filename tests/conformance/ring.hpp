@@ -109,7 +109,7 @@ inline msg::Event event_number(std::uint32_t module_id, std::int64_t number) {
   sample.module_id = module_id;
   sample.stamp_ns = number;
   sample.service = "docking";
-  sample.detail = "number " + std::to_string(number);
+  sample.detail.assign("number " + std::to_string(number));
   return sample;
 }
 

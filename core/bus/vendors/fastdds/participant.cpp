@@ -10,6 +10,7 @@
 #include <mutex>
 
 #include "core/bus/vendors/fastdds/bytes_type.hpp"
+#include "core/bus/vendors/fastdds/fast_discovery.hpp"
 #include "core/bus/vendors/network.hpp"
 #include "core/bus/vendors/request.hpp"
 
@@ -91,6 +92,7 @@ Result<eciton_participant*> eciton_participant::create(const eciton_participant_
                  std::to_string(config.domain) + " on " + config.network_interface + " (" + *address +
                  "); are its ports from " + std::to_string(7400 + 250 * config.domain) + " on taken?"};
   }
+  eciton::bus::fastdds::hasten_discovery(*created->participant);
   created->publisher = created->participant->create_publisher(fast::PublisherQos());
   created->subscriber = created->participant->create_subscriber(fast::SubscriberQos());
   if (created->publisher == nullptr || created->subscriber == nullptr) {
