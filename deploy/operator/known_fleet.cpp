@@ -8,7 +8,7 @@ namespace eciton::deploy {
 namespace {
 
 constexpr Duration clocks_differ = std::chrono::seconds(1);
-constexpr Duration never_heard = std::chrono::hours(24 * 365 * 50);
+constexpr TimePoint never_heard{-std::chrono::hours(24 * 365 * 50)};  // a reader's newest stamp is before this
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void KnownFleet::poll(TimePoint now) {
   beacon_.trigger().fetch();
   const TimePoint newest = std::max(state_.trigger().newest_stamp(), beacon_.trigger().newest_stamp());
   const Duration ahead = newest - now;
-  simulated_time_ = ahead > -never_heard && std::chrono::abs(ahead) > clocks_differ;
+  simulated_time_ = newest > never_heard && std::chrono::abs(ahead) > clocks_differ;
   module_now_ = simulated_time_ ? newest : now;
   swarm_.set_now(module_now_);
   take(state_, &KnownModule::state);

@@ -190,6 +190,7 @@ bool Operator::ready(Goal& goal) {
     return false;
   }
   if (!module->view && now_ - module->first_heard < config_.view_patience) return false;
+  if (!fits_the_chain(goal, *module)) return false;
   // A chain's members must all hear it, since they start together; and a match on our side comes before the
   // one on theirs.
   const std::size_t wanted = module->in_chain() ? module->view->members.size() : 1;
@@ -202,8 +203,7 @@ bool Operator::ready(Goal& goal) {
     goal.matched = true;
     goal.matched_since = now_;
   }
-  if (wanted > 1 && now_ - goal.matched_since < config_.match_patience) return false;
-  return fits_the_chain(goal, *module);
+  return wanted == 1 || now_ - goal.matched_since >= config_.match_patience;
 }
 
 bool Operator::fits_the_chain(Goal& goal, const KnownModule& module) {
