@@ -44,9 +44,10 @@ class ConfigTree {
   Status set(const std::string& assignment, const std::string& origin);
   std::string to_yaml() const;
 
+  struct Node;  // defined in config.cpp
+
  private:
   friend class ConfigReader;
-  struct Node;
   std::unique_ptr<Node> root_;
 };
 

@@ -1,0 +1,124 @@
+// A reader's bounded queue of decoded samples: keep last per key, drops counted by cause. Used from one
+// thread; allocates only when made.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/time.hpp"
+#include "core/bus/codec.hpp"
+
+namespace eciton::bus {
+
+/// Every sample that arrived is in exactly one of delivered, filtered, replaced, or a dropped_* count, or queued.
+struct ReaderStatistics {
+  std::uint64_t received = 0;
+  std::uint64_t delivered = 0;
+  std::uint64_t filtered = 0;           // of a module the reader was told not to hear
+  std::uint64_t replaced = 0;           // by a newer one of its key before it was taken: keep last
+  std::uint64_t dropped_malformed = 0;  // not a well-formed sample of the type
+  std::uint64_t dropped_late = 0;       // a newer one of its key had been delivered (sensor class)
+  std::uint64_t dropped_expired = 0;    // older than the topic's lifespan when taken
+  std::uint64_t dropped_overflow = 0;   // over the queue's bound
+
+  std::uint64_t dropped() const {
+    return dropped_malformed + dropped_late + dropped_expired + dropped_overflow;
+  }
+};
+
+template <Message T>
+class Inbox {
+ public:
+  /// `keep_last`: 1 replaces the queued sample of the same key; more queues them all up to `capacity`.
+  Inbox(std::size_t keep_last, std::size_t capacity, bool ordered)
+      : keep_last_(keep_last), ordered_(ordered), slots_(capacity), newest_(ordered ? capacity : 0) {}
+
+  /// Returns the queued sample, nullptr if it was dropped.
+  const T* push(std::span<const std::uint8_t> cdr, ReaderStatistics& statistics) {
+    ++statistics.received;
+    // Decoded in place: a slot that stays free when the sample is not wanted.
+    if (count_ == slots_.size()) {
+      first_ = next(first_, 1);
+      --count_;
+      ++statistics.dropped_overflow;
+    }
+    Slot& slot = slots_[next(first_, count_)];
+    if (!decode(cdr, slot.value)) {
+      ++statistics.dropped_malformed;
+      return nullptr;
+    }
+    if constexpr (requires { slot.value.module_id; }) {
+      if (only_module_ && slot.value.module_id != *only_module_) {
+        ++statistics.filtered;
+        return nullptr;
+      }
+    }
+    slot.key = key_hash(slot.value);
+    if (ordered_ && !is_newest(slot)) {
+      ++statistics.dropped_late;
+      return nullptr;
+    }
+    if (keep_last_ == 1) {
+      for (std::size_t k = 0; k < count_; ++k) {
+        Slot& queued = slots_[next(first_, k)];
+        if (queued.key != slot.key) continue;
+        queued.value = slot.value;
+        ++statistics.replaced;
+        return &queued.value;
+      }
+    }
+    ++count_;
+    return &slot.value;
+  }
+
+  void accept_only(std::uint32_t module_id) { only_module_ = module_id; }
+  bool empty() const { return count_ == 0; }
+
+  /// The oldest queued sample, valid until the next push; nullptr: none.
+  const T* pop() {
+    if (count_ == 0) return nullptr;
+    const T* value = &slots_[first_].value;
+    first_ = next(first_, 1);
+    --count_;
+    return value;
+  }
+
+ private:
+  struct Slot {
+    T value;
+    KeyHash key;
+  };
+  struct Newest {
+    KeyHash key;
+    std::int64_t stamp_ns;
+  };
+  /// A writer whose stamps fall back by more than this has restarted its clock; it is heard again.
+  static constexpr Duration restart_gap = std::chrono::seconds(1);
+
+  std::size_t next(std::size_t from, std::size_t by) const { return (from + by) % slots_.size(); }
+
+  bool is_newest(const Slot& slot) {
+    for (std::size_t k = 0; k < newest_count_; ++k) {
+      Newest& n = newest_[k];
+      if (n.key != slot.key) continue;
+      const std::int64_t behind_ns = n.stamp_ns - slot.value.stamp_ns;
+      if (behind_ns > 0 && behind_ns < restart_gap.count()) return false;
+      n.stamp_ns = slot.value.stamp_ns;
+      return true;
+    }
+    if (newest_count_ < newest_.size()) newest_[newest_count_++] = {slot.key, slot.value.stamp_ns};
+    return true;
+  }
+
+  std::size_t keep_last_;
+  bool ordered_;
+  std::optional<std::uint32_t> only_module_;
+  std::vector<Slot> slots_;
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  std::vector<Newest> newest_;
+  std::size_t newest_count_ = 0;
+};
+
+}  // namespace eciton::bus

@@ -1,0 +1,187 @@
+// Writer and reader of Cyclone DDS: one copy of the bytes into the pool at write and one at receipt, none in take.
+#include <cstring>
+#include <memory>
+#include <mutex>
+
+#include "core/bus/vendors/cyclonedds/bytes_type.hpp"
+#include "core/bus/vendors/cyclonedds/entities.hpp"
+#include "core/bus/vendors/request.hpp"
+
+using eciton::Error;
+using eciton::Result;
+using eciton::bus::cyclonedds::BytesPool;
+using eciton::bus::cyclonedds::BytesSerdata;
+
+namespace eciton::bus::cyclonedds {
+namespace {
+
+// Samples on their way beyond those a history holds: being sent, received, taken or retransmitted.
+constexpr std::size_t kSamplesInFlight = 24;
+// A take hands out this many samples at a time.
+constexpr std::uint32_t kTakenAtOnce = 16;
+
+using Qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
+
+Qos make_qos(const eciton_qos& asked) {
+  Qos qos(dds_create_qos(), dds_delete_qos);
+  // KEEP_LAST overwrites and so never waits for a slow reader; 1 ms bounds the rest, were there any.
+  dds_qset_reliability(qos.get(), asked.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       DDS_MSECS(1));
+  dds_qset_durability(qos.get(), asked.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  const auto depth = static_cast<std::int32_t>(asked.depth);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
+  if (asked.transient_local) {
+    dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, depth, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  }
+  dds_qset_writer_data_lifecycle(qos.get(), false);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
+  dds_qset_data_representation(qos.get(), 1, &representation);
+  return qos;
+}
+
+Result<dds_entity_t> create_topic(const eciton_participant& participant, const char* name, const eciton_type& type) {
+  ddsi_sertype* sertype = new_bytes_sertype(type);
+  const dds_entity_t topic =
+      dds_create_topic_sertype(participant.participant.get(), name, &sertype, nullptr, nullptr, nullptr);
+  if (topic > 0) return topic;
+  ddsi_sertype_unref(sertype);
+  return Error{participant.label() + ": Cyclone DDS cannot create topic \"" + name + "\" of type " + type.name + ": " +
+               dds_strretcode(-topic)};
+}
+
+Error cannot_create(const eciton_participant& participant, const char* what, const char* topic, dds_entity_t code) {
+  return Error{participant.label() + ": Cyclone DDS cannot create a " + what + " of topic \"" + topic +
+               "\": " + dds_strretcode(-code)};
+}
+
+Error no_memory(const eciton_participant& participant, const char* topic, const eciton_qos& qos) {
+  return Error{participant.label() + ": no memory for topic \"" + topic + "\" (depth " + std::to_string(qos.depth) +
+               ", " + std::to_string(qos.instances_max) + " keys): all endpoints of a process share " +
+               std::to_string(BytesPool::kBytesMax >> 20) + " MiB"};
+}
+
+}  // namespace
+
+bool Reservation::acquire(const eciton_type& type, const eciton_qos& qos) {
+  BytesPool& pool = BytesPool::instance();
+  const std::size_t sample_size = sample_block_size(type);
+  const std::size_t samples = std::size_t{qos.depth} * qos.instances_max + kSamplesInFlight;
+  if (!pool.reserve(sample_size, samples)) return false;
+  sample_size_ = sample_size;
+  samples_ = samples;
+  if (!pool.reserve(kKeyBlockSize, qos.instances_max)) return false;
+  keys_ = qos.instances_max;
+  return true;
+}
+
+Reservation::~Reservation() {
+  if (samples_ > 0) BytesPool::instance().unreserve(sample_size_, samples_);
+  if (keys_ > 0) BytesPool::instance().unreserve(kKeyBlockSize, keys_);
+}
+
+}  // namespace eciton::bus::cyclonedds
+
+namespace cyclonedds = eciton::bus::cyclonedds;
+
+Result<eciton_writer*> eciton_writer::create(eciton_participant& participant, const char* topic,
+                                             const eciton_type& type, const eciton_qos& qos) {
+  if (const eciton::Status checked = eciton::bus::vendors::check_endpoint(topic, type, qos); !checked) {
+    return checked.error();
+  }
+  std::unique_ptr<eciton_writer> created(new eciton_writer(type, qos.instances_max));
+  if (!created->memory_.acquire(type, qos)) return cyclonedds::no_memory(participant, topic, qos);
+  const Result<dds_entity_t> on = cyclonedds::create_topic(participant, topic, type);
+  if (!on) return on.error();
+  created->topic_.reset(*on);
+  const dds_entity_t writer =
+      dds_create_writer(participant.participant.get(), *on, cyclonedds::make_qos(qos).get(), nullptr);
+  if (writer < 0) return cyclonedds::cannot_create(participant, "writer", topic, writer);
+  created->writer_.reset(writer);
+  return created.release();
+}
+
+bool eciton_writer::write(const std::uint8_t* cdr, std::uint32_t size) {
+  if (!eciton::bus::vendors::well_formed(type_, cdr, size)) return false;
+  eciton::bus::vendors::InstanceKey key;
+  if (!eciton::bus::vendors::key_hash_of(type_, cdr, size, false, key.data())) return false;
+  {
+    const std::lock_guard<cyclonedds::InheritingMutex> lock(keys_mutex_);
+    if (!keys_.admit(key)) return false;
+  }
+  const cyclonedds::Bytes bytes{cdr, size};
+  return dds_write(writer_.get(), &bytes) == DDS_RETCODE_OK;
+}
+
+std::uint32_t eciton_writer::matched() const {
+  dds_publication_matched_status_t status{};
+  dds_get_publication_matched_status(writer_.get(), &status);
+  return status.current_count;
+}
+
+Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, const char* topic,
+                                             const eciton_type& type, const eciton_qos& qos, eciton_wake wake) {
+  if (const eciton::Status checked = eciton::bus::vendors::check_endpoint(topic, type, qos); !checked) {
+    return checked.error();
+  }
+  std::unique_ptr<eciton_reader> created(new eciton_reader(type, qos.instances_max, wake));
+  if (!created->memory_.acquire(type, qos)) return cyclonedds::no_memory(participant, topic, qos);
+  const Result<dds_entity_t> on = cyclonedds::create_topic(participant, topic, type);
+  if (!on) return on.error();
+  created->topic_.reset(*on);
+  // Not by RESOURCE_LIMITS: a reliable reader that refuses a sample for want of instances has it offered again and
+  // again by the receive thread, which delivers nothing else meanwhile. A filtered sample is gone.
+  dds_topic_filter filter{};
+  filter.mode = DDS_TOPIC_FILTER_SAMPLE_ARG;
+  filter.f.sample_arg = &eciton_reader::admit;
+  filter.arg = created.get();
+  dds_set_topic_filter_extended(*on, &filter);
+  const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(dds_create_listener(created.get()),
+                                                                            dds_delete_listener);
+  dds_lset_data_available(listener.get(), &eciton_reader::on_data_available);
+  const dds_entity_t reader =
+      dds_create_reader(participant.participant.get(), *on, cyclonedds::make_qos(qos).get(), listener.get());
+  if (reader < 0) return cyclonedds::cannot_create(participant, "reader", topic, reader);
+  created->reader_.reset(reader);
+  return created.release();
+}
+
+bool eciton_reader::admit(const void* sample, void* self) {
+  auto& reader = *static_cast<eciton_reader*>(self);
+  const auto* bytes = static_cast<const cyclonedds::Bytes*>(sample);
+  eciton::bus::vendors::InstanceKey key;
+  return eciton::bus::vendors::key_hash_of(reader.type_, bytes->cdr, bytes->size, false, key.data()) &&
+         reader.keys_.admit(key);
+}
+
+void eciton_reader::on_data_available(dds_entity_t, void* self) {
+  const eciton_wake& wake = static_cast<eciton_reader*>(self)->wake_;
+  if (wake.signal != nullptr) wake.signal(wake.context);
+}
+
+std::uint32_t eciton_reader::take(std::uint32_t count_max, eciton_sink sink, void* context) {
+  std::uint32_t given = 0;
+  ddsi_serdata* samples[cyclonedds::kTakenAtOnce];
+  dds_sample_info_t infos[cyclonedds::kTakenAtOnce];
+  while (given < count_max) {
+    const std::uint32_t asked = std::min(cyclonedds::kTakenAtOnce, count_max - given);
+    const dds_return_t taken = dds_takecdr(reader_.get(), samples, asked, infos, DDS_ANY_STATE);
+    if (taken <= 0) break;
+    for (dds_return_t k = 0; k < taken; ++k) {
+      const auto* bytes = static_cast<const BytesSerdata*>(samples[k]);
+      if (infos[k].valid_data) {  // not: a writer went or disposed; the framework tells by fields and ages
+        sink(context, bytes->cdr(), bytes->size);
+        ++given;
+      }
+      ddsi_serdata_unref(samples[k]);
+    }
+  }
+  return given;
+}
+
+std::uint32_t eciton_reader::matched() const {
+  dds_subscription_matched_status_t status{};
+  dds_get_subscription_matched_status(reader_.get(), &status);
+  return status.current_count;
+}

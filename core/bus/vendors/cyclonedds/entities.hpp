@@ -1,0 +1,108 @@
+// Participant, writer and reader of bytes on Cyclone DDS.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "core/base/result.hpp"
+#include "core/bus/plugin.h"
+#include "core/bus/vendors/cyclonedds/bytes_pool.hpp"
+#include "core/bus/vendors/cyclonedds/domain.hpp"
+#include "core/bus/vendors/cyclonedds/vendor.hpp"
+#include "core/bus/vendors/instance_set.hpp"
+#include "core/bus/vendors/reannouncer.hpp"
+
+namespace eciton::bus::cyclonedds {
+
+/// An entity that is deleted with its owner.
+class Entity {
+ public:
+  Entity() = default;
+  explicit Entity(dds_entity_t handle) : handle_(handle) {}
+  Entity(const Entity&) = delete;
+  Entity& operator=(const Entity&) = delete;
+  ~Entity() { reset(0); }
+  void reset(dds_entity_t handle) {
+    if (handle_ > 0) dds_delete(handle_);
+    handle_ = handle;
+  }
+  dds_entity_t get() const { return handle_; }
+  bool good() const { return handle_ > 0; }
+
+ private:
+  dds_entity_t handle_ = 0;
+};
+
+/// Pool memory held for one endpoint.
+class Reservation {
+ public:
+  Reservation() = default;
+  Reservation(const Reservation&) = delete;
+  Reservation& operator=(const Reservation&) = delete;
+  ~Reservation();
+  bool acquire(const eciton_type& type, const eciton_qos& qos);
+
+ private:
+  std::size_t sample_size_ = 0;
+  std::size_t samples_ = 0;
+  std::size_t keys_ = 0;
+};
+
+}  // namespace eciton::bus::cyclonedds
+
+struct eciton_participant {
+  static eciton::Result<eciton_participant*> create(const eciton_participant_config& config);
+  std::string label() const;
+
+  eciton::bus::cyclonedds::SharedDomain domain;  // outlives the participant
+  std::string name;
+  std::uint32_t domain_id;
+  eciton::bus::cyclonedds::Entity participant;
+
+ private:
+  eciton_participant(eciton::bus::cyclonedds::SharedDomain&& in, const eciton_participant_config& config);
+  static void on_discovery(dds_entity_t reader, void* self);
+  void announce();
+
+  std::uint8_t announcement_ = 0;
+  eciton::bus::vendors::Reannouncer reannouncer_;
+  eciton::bus::cyclonedds::Entity discovery_;  // reader of the vendor's list of participants; first to go
+};
+
+struct eciton_writer {
+  static eciton::Result<eciton_writer*> create(eciton_participant& participant, const char* topic,
+                                               const eciton_type& type, const eciton_qos& qos);
+  bool write(const std::uint8_t* cdr, std::uint32_t size);
+  std::uint32_t matched() const;
+
+ private:
+  eciton_writer(const eciton_type& type, std::uint32_t keys_max) : type_(type), keys_(keys_max) {}
+
+  eciton_type type_;
+  eciton::bus::cyclonedds::InheritingMutex keys_mutex_;
+  eciton::bus::vendors::InstanceSet keys_;
+  eciton::bus::cyclonedds::Reservation memory_;
+  eciton::bus::cyclonedds::Entity topic_;
+  eciton::bus::cyclonedds::Entity writer_;
+};
+
+struct eciton_reader {
+  static eciton::Result<eciton_reader*> create(eciton_participant& participant, const char* topic,
+                                               const eciton_type& type, const eciton_qos& qos, eciton_wake wake);
+  std::uint32_t take(std::uint32_t count_max, eciton_sink sink, void* context);
+  std::uint32_t matched() const;
+
+ private:
+  eciton_reader(const eciton_type& type, std::uint32_t keys_max, eciton_wake wake)
+      : type_(type), keys_(keys_max), wake_(wake) {}
+  static void on_data_available(dds_entity_t reader, void* self);
+  static bool admit(const void* sample, void* self);
+
+  eciton_type type_;
+  eciton::bus::vendors::InstanceSet keys_;  // used under the lock of the vendor's history
+  eciton_wake wake_;
+  eciton::bus::cyclonedds::Reservation memory_;
+  eciton::bus::cyclonedds::Entity topic_;
+  eciton::bus::cyclonedds::Entity reader_;  // last: deleted first, and with it the last call of the two above
+};

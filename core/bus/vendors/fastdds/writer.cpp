@@ -1,0 +1,55 @@
+// Writes bytes with Fast DDS, synchronously: the calling thread sends, so that no second thread adds jitter.
+#include "core/bus/vendors/fastdds/bytes_type.hpp"
+#include "core/bus/vendors/fastdds/endpoints.hpp"
+#include "core/bus/vendors/request.hpp"
+
+namespace fast = eprosima::fastdds::dds;
+using eciton::Error;
+using eciton::Result;
+
+namespace {
+
+fast::DataWriterQos writer_qos(const eciton_qos& asked) {
+  fast::DataWriterQos qos;
+  eciton::bus::fastdds::set_common_qos(qos, asked, 0, 0);
+  qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
+  // At the default of 3 s a late joiner, or one that lost the last sample, waits as long.
+  qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(0, 50'000'000);
+  qos.reliable_writer_qos().times.nackResponseDelay = eprosima::fastrtps::Duration_t(0, 0);
+  return qos;
+}
+
+}  // namespace
+
+Result<eciton_writer*> eciton_writer::create(eciton_participant& participant, const char* topic,
+                                             const eciton_type& type, const eciton_qos& qos) {
+  if (const eciton::Status checked = eciton::bus::vendors::check_endpoint(topic, type, qos); !checked) {
+    return checked.error();
+  }
+  const Result<fast::Topic*> on = participant.topic(topic, type);
+  if (!on) return on.error();
+  std::unique_ptr<eciton_writer> created(new eciton_writer(participant, type));
+  created->writer_ = participant.publisher->create_datawriter(*on, writer_qos(qos), created.get(),
+                                                              fast::StatusMask::publication_matched());
+  if (created->writer_ == nullptr) {
+    return Error{participant.label() + ": Fast DDS cannot create a writer of topic \"" + topic + "\""};
+  }
+  return created.release();
+}
+
+eciton_writer::~eciton_writer() {
+  if (writer_ != nullptr) participant_.publisher->delete_datawriter(writer_);
+}
+
+bool eciton_writer::write(const std::uint8_t* cdr, std::uint32_t size) {
+  eciton::bus::fastdds::Bytes bytes{cdr, size};
+  std::uint8_t hash[16];
+  if (!eciton::bus::vendors::well_formed(type_, cdr, size)) return false;
+  if (!eciton::bus::vendors::key_hash_of(type_, cdr, size, false, hash)) return false;
+  return writer_->write(&bytes);
+}
+
+void eciton_writer::on_publication_matched(fast::DataWriter*, const fast::PublicationMatchedStatus& status) {
+  if (participant_.owns(status.last_subscription_handle)) return;
+  matched_.fetch_add(static_cast<std::uint32_t>(status.current_count_change), std::memory_order_relaxed);
+}

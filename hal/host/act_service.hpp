@@ -1,0 +1,64 @@
+// From a module's ring to its actuators, with a safe output of its own: when commands stop it holds the
+// last one for 20 ms, then flies the module down on the IMU (in a chain it first holds the hover wrench).
+#pragma once
+
+#include <vector>
+
+#include "core/bus/participant.hpp"
+#include "core/robot/allocation.hpp"
+#include "core/robot/attitude_filter.hpp"
+#include "core/robot/safe_descent.hpp"
+#include "core/runtime/service.hpp"
+#include "hal/devices.hpp"
+#include "idl/topics.hpp"
+
+namespace eciton::hal {
+
+struct ActConfig {
+  std::uint32_t module_id = 0;
+  double hold_s = 0.02;       // the last command stands for so long
+  double at_most_s = 0.004;   // steps without a command
+};
+
+class ActService final : public runtime::Service {
+ public:
+  ActService(bus::Participant& ring, const ActConfig& config, const robot::Airframe& airframe, Devices& devices);
+
+  std::string_view name() const override { return "actuators"; }
+  runtime::Schedule schedule() override {
+    return runtime::on(rotor_command_, from_s(config_.at_most_s), runtime::Phase::act);
+  }
+  void step(TimePoint now) noexcept override;
+
+ private:
+  void take_commands(TimePoint now) noexcept;
+  void write_rotors(TimePoint now) noexcept;
+  void write_safe_output(TimePoint now) noexcept;
+  void watch_attitude() noexcept;
+  void write_joints_and_latches() noexcept;
+  void set_armed(bool armed, TimePoint now) noexcept;
+  void report(TimePoint now, msg::Severity severity, const char* text) noexcept;
+
+  ActConfig config_;
+  robot::Airframe airframe_;
+  Devices& devices_;
+  robot::Allocator allocator_;
+  robot::AttitudeFilter attitude_;
+  robot::SafeDescent descent_;
+
+  msg::RotorCommand last_;
+  TimePoint last_command_{};
+  TimePoint last_step_{};
+  TimePoint last_imu_{};
+  robot::Vector3 specific_force_M_{0, 0, robot::gravity_m_s2};
+
+  bus::Reader<msg::RotorCommand> rotor_command_;
+  bus::Reader<msg::JointCommand> joint_command_;
+  bus::Reader<msg::LatchCommand> latch_command_;
+  bus::Reader<msg::Imu> imu_;
+  bus::Reader<msg::ModuleState> module_state_;
+  bus::Writer<msg::Event> event_;
+  bus::Writer<msg::Fault> fault_;
+};
+
+}  // namespace eciton::hal

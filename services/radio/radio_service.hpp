@@ -1,0 +1,91 @@
+// The one bridge between a module's ring and the swarm ring: forwards the topics whose scope is swarm,
+// byte for byte, within their rates; sends the beacon; knows every peer's clock.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/base/config.hpp"
+#include "core/bus/participant.hpp"
+#include "core/runtime/service.hpp"
+#include "idl/topics.hpp"
+#include "services/radio/airtime.hpp"
+#include "services/radio/peer_clock.hpp"
+
+namespace eciton::radio {
+
+struct RadioConfig {
+  std::uint32_t module_id = 0;
+  std::string name;      // of the module
+  std::string airframe;
+  std::uint64_t incarnation = 1;
+  double period_s = 0.01;
+  double state_rate_Hz = 50;
+  double joint_rate_Hz = 50;
+  double wrench_rate_Hz = 100;
+  double beacon_period_s = 2.0;         // idle
+  double beacon_near_period_s = 0.5;    // approaching or in a chain
+  double airtime_budget_bit_s = 6e6;    // of the radio's medium, what this module may use
+
+  template <class V>
+  void visit_fields(V& v) {
+    v("period_s", period_s, in_range(0.001, 0.1));
+    v("state_rate_Hz", state_rate_Hz, in_range(1, 500));
+    v("joint_rate_Hz", joint_rate_Hz, in_range(1, 500));
+    v("wrench_rate_Hz", wrench_rate_Hz, in_range(1, 500));
+    v("beacon_period_s", beacon_period_s, in_range(0.1, 10));
+    v("beacon_near_period_s", beacon_near_period_s, in_range(0.1, 10));
+    v("airtime_budget_bit_s", airtime_budget_bit_s, in_range(1e4, 1e9));
+  }
+};
+
+class RadioService final : public runtime::Service {
+ public:
+  RadioService(bus::Participant& ring, bus::Participant& swarm, const RadioConfig& config);
+  ~RadioService() override;
+
+  std::string_view name() const override { return "radio"; }
+  runtime::Schedule schedule() override { return runtime::every(from_s(config_.period_s), runtime::Phase::coordinate); }
+  void step(TimePoint now) noexcept override;
+
+ private:
+  struct Route;
+
+  void add_route(const bus::TopicInfo& topic);
+  void forward_out(Route& route) noexcept;
+  void forward_in(Route& route) noexcept;
+  void watch_own_module() noexcept;
+  void hear_beacons(TimePoint now) noexcept;
+  void meet_own_id(const msg::Beacon& beacon, TimePoint now) noexcept;
+  void note_echo(const msg::Beacon& beacon, TimePoint now) noexcept;
+  void send_beacon(TimePoint now) noexcept;
+
+  RadioConfig config_;
+  bus::Participant& ring_;
+  bus::Participant& swarm_;
+  std::vector<Route> routes_;
+  TimePoint now_{};
+  TimePoint beacon_due_{};
+  bool near_ = false;       // approaching or in a chain: wrenches go out
+  bool docking_ = false;
+  bool courted_ = false;    // a peer approaches us
+  bool chained_ = false;
+  bool duplicate_id_ = false;
+  Airtime airtime_;
+  std::uint64_t sent_ = 0;
+  std::uint64_t dropped_ = 0;
+  msg::Beacon beacon_;
+  std::array<PeerClock, 128> clocks_;  // by module id
+
+  bus::Reader<msg::DockingState> docking_state_;
+  bus::Reader<msg::ChainView> chain_view_;
+  bus::Reader<msg::ModuleState> module_state_;
+  bus::Reader<msg::Heartbeat> heartbeat_;
+  bus::Reader<msg::Beacon> beacons_heard_;
+  bus::Writer<msg::Beacon> beacon_to_swarm_;
+  bus::Writer<msg::Beacon> beacon_to_ring_;
+  bus::Writer<msg::Fault> fault_;
+};
+
+}  // namespace eciton::radio
