@@ -8,8 +8,6 @@
 namespace eciton::deploy {
 namespace {
 
-constexpr std::uint32_t module_ring_domain_base = 10;
-
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
@@ -53,6 +51,17 @@ bus::ParticipantConfig ModuleConfig::swarm_participant(const std::string& proces
   return participant;
 }
 
+void set_identity(ModuleConfig& config) {
+  config.estimation.module_id = config.id;
+  config.control.module_id = config.id;
+  config.control.observer_gain_1_s = config.estimation.observer_gain_1_s;
+  config.docking.module_id = config.id;
+  config.joints.module_id = config.id;
+  config.radio.module_id = config.id;
+  config.radio.name = config.name;
+  config.radio.airframe = config.airframe;
+}
+
 Result<ModuleConfig> load_module_config(const std::vector<std::string>& files,
                                         const std::vector<std::string>& assignments) {
   ConfigTree tree;
@@ -66,12 +75,13 @@ Result<ModuleConfig> load_module_config(const std::vector<std::string>& files,
   if (const Status status = read_config(tree, config); !status) return status.error();
   if (config.id == 0) return Error{joined(files) + ": id is missing; expected a whole number from 1 to 90"};
   if (config.name.empty()) config.name = "m" + std::to_string(config.id);
-  if (config.module_ring.domain == 0) config.module_ring.domain = module_ring_domain_base + config.id;
+  if (config.module_ring.domain == 0) config.module_ring.domain = module_ring_domain(config.id);
   if (config.module_ring.domain == config.swarm_ring.domain) {
     return Error{joined(files) + ": module_ring.domain and swarm_ring.domain are both " +
                  std::to_string(config.swarm_ring.domain) + "; the two rings need different domains"};
   }
   if (const Status status = check_vendors(config); !status) return status.error();
+  set_identity(config);
   return config;
 }
 

@@ -48,7 +48,7 @@ class Simulation {
   /// The operators' participant on the swarm ring.
   bus::Participant& operators() { return *operators_; }
   /// A participant that listens on a module's ring and writes nothing: what the services believe.
-  bus::Participant& listener(std::size_t module) { return *modules_[module]->listener; }
+  bus::Participant& listener(std::size_t module);
   bus::sim_network::Network& swarm() { return bus::sim_network::Network::of(config_.module.swarm_ring.domain); }
   std::size_t size() const { return modules_.size(); }
   TimePoint now() const { return executor_->now(); }
@@ -56,10 +56,12 @@ class Simulation {
 
  private:
   struct SimulatedModule;
+  void add_module(std::uint32_t id);
 
   SimulationConfig config_;
   TimePoint start_;
   std::unique_ptr<hal::sim::World> world_;
+  std::unique_ptr<runtime::Plant> wired_;  // the world with every module's board
   std::unique_ptr<runtime::SimExecutor> executor_;
   std::vector<std::unique_ptr<SimulatedModule>> modules_;
   std::unique_ptr<bus::Participant> operators_;

@@ -11,7 +11,7 @@ using robot::PoseMotion;
 using robot::PoseReference;
 
 FlightReference::FlightReference(const robot::Airframe& airframe, const FlightReferenceConfig& config)
-    : airframe_(airframe), config_(config) {}
+    : airframe_(airframe), config_(config), joints_(airframe) {}
 
 void FlightReference::hold(const Pose& X_WM) {
   kind_ = Kind::motion;
@@ -46,14 +46,14 @@ void FlightReference::descend(double speed_m_s, double now_s) {
   tracked_s_ = now_s;
 }
 
-void FlightReference::join(const ChainPlace& place, std::span<const double> joint_rad, const Pose& X_WB_base,
+void FlightReference::join(const ChainPlace& place, std::span<const double> joint_rad, const Pose& X_WM_base,
                            double now_s) {
   const PoseReference own = at(now_s);
   in_chain_ = true;
   kind_ = Kind::motion;
   place_ = place;
-  joints_ = robot::JointMotion(joint_rad);
-  motion_ = PoseMotion(X_WB_base);
+  joints_.reset(joint_rad, place.base);
+  motion_ = PoseMotion(X_WM_base);
   offset_p_.setZero();
   offset_R_.setIdentity();
   // Where the shared base puts this module, and where it is by its own lights: biases of its sensors, of the
@@ -63,10 +63,10 @@ void FlightReference::join(const ChainPlace& place, std::span<const double> join
   offset_R_ = shared.R_WM.transpose() * own.R_WM;
 }
 
-void FlightReference::move_base(const Pose& X_WB_goal, double speed_m_s, double start_s, double now_s) {
+void FlightReference::move_base(const Pose& X_WM_goal, double speed_m_s, double start_s, double now_s) {
   robot::TrajectoryLimits limits = config_.limits;
   limits.speed_m_s = speed_m_s > 0 ? speed_m_s : config_.speed_m_s;
-  motion_ = PoseMotion(motion_.at(now_s), X_WB_goal, start_s, robot::SpeedProfile::trapezoid, limits);
+  motion_ = PoseMotion(motion_.at(now_s), X_WM_goal, start_s, robot::SpeedProfile::trapezoid, limits);
 }
 
 void FlightReference::leave(double now_s) {
@@ -77,11 +77,11 @@ void FlightReference::leave(double now_s) {
 
 PoseReference FlightReference::own_part(double now_s) const {
   std::array<robot::ScalarMotion, robot::coordinates_max> joints;
-  const std::size_t count = place_.members * airframe_.joints.size();
-  joints_.at(now_s, std::span(joints).first(count));
-  PoseReference own = robot::chain_member_reference(airframe_, place_.base, motion_.at(now_s),
-                                                    std::span<const robot::ScalarMotion>(joints).first(count),
-                                                    place_.own);
+  std::array<PoseReference, robot::members_max> members;
+  const std::span part = std::span(joints).first(place_.members * airframe_.joints.size());
+  joints_.at(now_s, part);
+  robot::chain_references(airframe_, place_.base, motion_.at(now_s), part, std::span(members).first(place_.members));
+  PoseReference own = members[place_.own];
   own.p_WM += offset_p_;
   own.R_WM = own.R_WM * offset_R_;
   own.w_WM_M = offset_R_.transpose() * own.w_WM_M;

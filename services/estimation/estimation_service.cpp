@@ -105,7 +105,7 @@ void EstimationService::take_chain(TimePoint now) noexcept {
   }
   while (const auto request = mode_request_.take()) {
     if (request->value.module_id == config_.module_id && request->value.action == msg::ModeAction::zero) {
-      zeroing_.reset();
+      zero_asked_ = true;
     }
   }
 }
@@ -128,15 +128,21 @@ void EstimationService::observe(TimePoint now) noexcept {
                     .R_WM = R,
                     .known_M = rotors_.wrench_B(c_B)},
                    dt_s);
-  if (config_.zeroing) {
-    zeroing_.update({.wrench_W = observer_.wrench_W(),
-                     .R_WM = R,
-                     .v_WM = state_.v_WM,
-                     .w_WM_M = estimate_.w_WB_B,
-                     .free_flight = free_flight()},
-                    dt_s);
+  zero(dt_s);
+  external_W_ = config_.zeroing ? zeroing_.bias().take_off(observer_.wrench_W(), R) : observer_.wrench_W();
+}
+
+void EstimationService::zero(double dt_s) noexcept {
+  // By itself, in the first free hover; asked for again, anew. What a peer's touch interrupts begins again.
+  if (!free_flight()) {
+    zeroing_interrupted_ = true;
+    return;
   }
-  external_W_ = observer_.wrench_W() - zeroing_.bias_W(R);
+  const bool wanted = zero_asked_ || !zeroing_.zeroed();
+  const bool measuring = zeroing_.phase() == ZeroingPhase::measuring;
+  if (wanted && (!measuring || zeroing_interrupted_)) zeroing_.start();
+  zero_asked_ = zeroing_interrupted_ = false;
+  zeroing_.update(observer_.wrench_W(), estimate_.X_WB.R, state_.v_WM, estimate_.w_WB_B, dt_s);
 }
 
 bool EstimationService::free_flight() const {
@@ -185,33 +191,33 @@ void EstimationService::publish_contact_wrench(TimePoint now) noexcept {
   for (std::size_t k = 0; k < n; ++k) {
     const bool own = view_.members[k] == config_.module_id;
     const msg::ExternalWrench& w = own ? own_ : heard_[k];
-    const double age_s = own ? 0 : to_s(now - heard_at_[k]);
     // A wrench of another epoch belongs to a body that is no more, or not yet: it counts as not heard.
-    const bool heard = own || (w.module_id == view_.members[k] && w.epoch == view_.active_epoch);
-    members[k] = {.external_W = {robot::vector(w.force_W_N), robot::vector(w.moment_W_Nm)},
+    members[k] = {.known = own || (w.module_id == view_.members[k] && w.epoch == view_.active_epoch),
+                  .age_s = own ? 0 : to_s(now - heard_at_[k]),
+                  .external_W = {robot::vector(w.force_W_N), robot::vector(w.moment_W_Nm)},
                   .r_W = robot::vector(w.r_W_m),
-                  .P_male_W = {w.port_W_m[0], w.port_W_m[1], w.port_W_m[2]},
-                  .P_female_W = {w.port_W_m[3], w.port_W_m[4], w.port_W_m[5]},
-                  .age_s = age_s,
-                  .heard = heard};
+                  .port_to_next_W = {w.port_W_m[0], w.port_W_m[1], w.port_W_m[2]},
+                  .port_to_last_W = {w.port_W_m[3], w.port_W_m[4], w.port_W_m[5]}};
   }
-  const ContactEstimate estimate = contact_.update(std::span(members).first(n));
+  const ContactWrenches contacts = contact_wrenches(std::span<const MemberWrench>(members).first(n));
+  if (!contacts.complete) return;
   msg::ContactWrench out;
   out.module_id = config_.module_id;
   out.stamp_ns = to_ns(now);
   out.epoch = view_.active_epoch;
-  out.fresh = static_cast<std::uint32_t>(estimate.fresh);
-  out.common_force_W_N = robot::array(estimate.common_W.force);
-  out.common_moment_W_Nm = robot::array(estimate.common_W.moment);
+  out.fresh = static_cast<std::uint32_t>(contacts.fresh);
+  out.common_force_W_N = robot::array(contacts.common_W.force);
+  out.common_moment_W_Nm = robot::array(contacts.common_W.moment);
   for (std::size_t k = 0; k < n; ++k) {
+    const MemberContact& contact = contacts.members[k];
     out.members.push_back({.module_id = view_.members[k],
-                           .age_s = members[k].heard ? members[k].age_s : 1e9,
+                           .age_s = members[k].age_s,
                            .r_W_m = robot::array(members[k].r_W),
-                           .d_force_W_N = robot::array(estimate.d_W[k].force),
-                           .d_moment_W_Nm = robot::array(estimate.d_W[k].moment),
-                           .link_W_m = robot::array(estimate.P_W[k]),
-                           .link_force_W_N = robot::array(estimate.c_W[k].force),
-                           .link_moment_W_Nm = robot::array(estimate.c_W[k].moment)});
+                           .d_force_W_N = robot::array(contact.d_W.force),
+                           .d_moment_W_Nm = robot::array(contact.d_W.moment),
+                           .link_W_m = robot::array(contact.link_W),
+                           .link_force_W_N = robot::array(contact.contact_W.force),
+                           .link_moment_W_Nm = robot::array(contact.contact_W.moment)});
   }
   contact_wrench_.write(out);
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
 #include "core/robot/actuator_lag.hpp"
 #include "core/robot/kinematics.hpp"
@@ -22,14 +23,12 @@ struct EstimationConfig {
   double wrench_rate_Hz = 100;
   double observer_gain_1_s = 10;
   bool zeroing = true;             // false: a controller on wrenches that were never zeroed (an experiment's control)
-  double peer_fresh_s = 0.15;      // a member's wrench older than this is no longer fresh
 
   template <class V>
   void visit_fields(V& v) {
     v("wrench_rate_Hz", wrench_rate_Hz, in_range(10, 500));
     v("observer_gain_1_s", observer_gain_1_s, in_range(0.5, 50));
     v("zeroing", zeroing);
-    v("peer_fresh_s", peer_fresh_s, in_range(0.02, 2));
   }
 };
 
@@ -49,6 +48,7 @@ class EstimationService final : public runtime::Service {
   void take_chain(TimePoint now) noexcept;
   void take_sensors() noexcept;
   void observe(TimePoint now) noexcept;
+  void zero(double dt_s) noexcept;
   void publish_state(TimePoint now) noexcept;
   void publish_external_wrench(TimePoint now) noexcept;
   void publish_contact_wrench(TimePoint now) noexcept;
@@ -73,13 +73,15 @@ class EstimationService final : public runtime::Service {
   Estimate estimate_;
   CentreOfMass state_;
   robot::Wrench external_W_;        // about the composite centre of mass, bias removed
-  ContactWrench contact_;
   msg::ExternalWrench own_;
 
   msg::ChainView view_;             // the active one
   bool touching_ = false;           // or about to: the zero stays as it is
   std::array<msg::ExternalWrench, 16> heard_{};  // by place in the chain
   std::array<TimePoint, 16> heard_at_{};
+
+  bool zero_asked_ = false;
+  bool zeroing_interrupted_ = false;
 
   TimePoint last_step_{};
   TimePoint wrench_due_{};

@@ -51,9 +51,9 @@ const std::vector<Rule>& rules() {
       {std::regex("hal/host/.*"), {"hal/", "core/base/", "core/bus/*", "core/runtime/", "core/robot/", "idl/*"}},
       // The simulated world moves as the executor's plant, and emulates the devices of the real backends.
       {std::regex("hal/sim/.*"),
-       {"hal/interfaces.hpp", "hal/sim/", "hal/serial/", "hal/dynamixel/", "hal/dshot/", "core/base/", "core/robot/",
+       {"hal/*", "hal/sim/", "hal/serial/", "hal/dynamixel/", "hal/dshot/", "core/base/", "core/robot/",
         "core/runtime/plant.hpp"}},
-      {std::regex("hal/([^/]+)/.*"), {"hal/interfaces.hpp", "hal/$1/", "hal/serial/", "core/base/", "core/robot/"}},
+      {std::regex("hal/([^/]+)/.*"), {"hal/*", "hal/$1/", "hal/serial/", "core/base/", "core/robot/"}},
       {std::regex("hal/.*"), {"hal/*", "core/base/", "core/robot/"}},
       {std::regex("(deploy|tests|benchmarks)/.*"), {""}},
   };
