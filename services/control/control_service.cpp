@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/robot/arrays.hpp"
-#include "core/robot/chain_morph.hpp"
 
 namespace eciton::control {
 namespace {
@@ -279,11 +278,11 @@ void ControlService::take_morph_goals(TimePoint now) noexcept {
     const msg::MorphGoal& goal = sample->value;
     if (!in_chain() || goal.epoch != view_.active_epoch || goal.correlation_id == answered_morph_) continue;
     answered_morph_ = goal.correlation_id;
-    // The joints service of the member it names answers, by this same check.
-    const std::span<const double> target(goal.joint_position_rad.data(), goal.joint_position_rad.size());
-    if (robot::refuse_morph(airframe_, view_.members.size(), target)) continue;
-    const double start_s = std::max(seconds(now), seconds(from_ns(goal.start_ns)));
-    reference_.morph(robot::plan_morph(reference_.joints(), target, goal.rate_rad_s, start_s));
+    // The joints service of the member it names answers; it comes to the same verdict.
+    const std::span<const double> joint_rad(goal.joint_position_rad.data(), goal.joint_position_rad.size());
+    const double now_s = seconds(now);
+    static_cast<void>(
+        reference_.morph(joint_rad, goal.rate_rad_s, std::max(now_s, seconds(from_ns(goal.start_ns))), now_s));
   }
 }
 

@@ -1,5 +1,5 @@
 // Joint limits and the tilt of chains, by hand.
-#include "services/joints/joint_limits.hpp"
+#include "core/robot/joint_limits.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-namespace eciton::joints {
+namespace eciton::robot {
 namespace {
 
 std::string text(const LimitFault& fault) {
@@ -17,7 +17,7 @@ std::string text(const LimitFault& fault) {
 }
 
 TEST(JointLimitsTest, NamesTheJointItsValueAndItsLimit) {
-  const robot::Airframe a = robot::legion();
+  const Airframe a = legion();
   EXPECT_FALSE(check_positions(a, std::array{1.5, -1.5, 0.0, 0.3}));
   const auto fault = check_positions(a, std::array{0.0, 0.0, 0.0, -1.62});
   ASSERT_TRUE(fault);
@@ -27,14 +27,14 @@ TEST(JointLimitsTest, NamesTheJointItsValueAndItsLimit) {
 }
 
 TEST(JointLimitsTest, AWrongNumberOfPositionsIsRefused) {
-  const robot::Airframe a = robot::legion();
+  const Airframe a = legion();
   EXPECT_EQ(check_positions(a, std::array{0.0, 0.0, 0.0})->kind, LimitKind::count);
   EXPECT_EQ(check_positions(a, {})->kind, LimitKind::count);
   EXPECT_EQ(check_positions(a, std::array<double, 40>{})->kind, LimitKind::count);
 }
 
 TEST(JointLimitsTest, RatesArePositiveAndWithinTheServos) {
-  const robot::Airframe a = robot::legion();
+  const Airframe a = legion();
   EXPECT_FALSE(check_rate(a, 2.6));
   EXPECT_EQ(text(*check_rate(a, 3)), "joint rate 3.000 rad/s; it must be above 0 and at most 2.600 rad/s");
   EXPECT_TRUE(check_rate(a, -0.1));
@@ -42,7 +42,7 @@ TEST(JointLimitsTest, RatesArePositiveAndWithinTheServos) {
 }
 
 TEST(ChainTiltTest, PitchAnglesAddUpFromTheBase) {
-  const robot::Airframe a = robot::legion();
+  const Airframe a = legion();
   // Pitch joints of four members; member 0's is free. Seen from member 1: 0.3 one way, 0.5 and 0.9 the other.
   const std::array q{0.0, 0.0, 0.0, 0.3, 0.0, 0.5, 0.0, 0.4};
   const ChainTilt from_second = chain_tilt(a, 1, q);
@@ -52,11 +52,11 @@ TEST(ChainTiltTest, PitchAnglesAddUpFromTheBase) {
 }
 
 TEST(ChainTiltTest, YawAloneDoesNotTilt) {
-  EXPECT_NEAR(chain_tilt(robot::legion(), 1, std::array{0.7, 0.0, -1.0, 0.0, 0.0, 0.0}).tilt_rad, 0, 1e-12);
+  EXPECT_NEAR(chain_tilt(legion(), 1, std::array{0.7, 0.0, -1.0, 0.0, 0.0, 0.0}).tilt_rad, 0, 1e-12);
 }
 
 TEST(ChainTiltTest, BeyondTheLimitIsRefusedButWayBackIsOpen) {
-  const robot::Airframe a = robot::legion();
+  const Airframe a = legion();
   const std::array straight{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, bent{0.0, 0.0, 0.0, 0.8, 0.0, 0.8};
   const auto fault = check_chain_tilt(a, 0, straight, bent);
   ASSERT_TRUE(fault);
@@ -66,7 +66,7 @@ TEST(ChainTiltTest, BeyondTheLimitIsRefusedButWayBackIsOpen) {
 }
 
 TEST(ChainTiltTest, AChainBentTooFarMayBeStraightened) {
-  const robot::Airframe a = robot::legion();
+  const Airframe a = legion();
   const std::array bent{0.0, 0.0, 0.0, 0.8, 0.0, 0.8};
   EXPECT_FALSE(check_chain_tilt(a, 0, bent, std::array<double, 6>{}));
   EXPECT_TRUE(check_chain_tilt(a, 0, bent, std::array{0.0, 0.0, 0.0, 0.9, 0.0, 0.9}));
@@ -75,7 +75,7 @@ TEST(ChainTiltTest, AChainBentTooFarMayBeStraightened) {
 TEST(ChainTiltTest, ABendOnTheWayIsFoundThoughBothEndsAreFlyable) {
   // Pitch 1.0, yaw psi, pitch 0.9: the tilt has cosine cos 1 cos .9 - sin 1 sin .9 cos psi, 1.28 rad at
   // psi = +-1.5 and 1.9 rad half-way between.
-  const robot::Airframe a = robot::legion();
+  const Airframe a = legion();
   const std::array from{0.0, 0.0, 1.5, 1.0, 0.0, 0.9}, to{0.0, 0.0, -1.5, 1.0, 0.0, 0.9};
   const double tilt = std::acos(std::cos(1) * std::cos(.9) - std::sin(1) * std::sin(.9) * std::cos(1.5));
   EXPECT_NEAR(chain_tilt(a, 0, from).tilt_rad, tilt, 1e-12);
@@ -84,4 +84,4 @@ TEST(ChainTiltTest, ABendOnTheWayIsFoundThoughBothEndsAreFlyable) {
 }
 
 }  // namespace
-}  // namespace eciton::joints
+}  // namespace eciton::robot

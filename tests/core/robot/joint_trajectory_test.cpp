@@ -1,15 +1,15 @@
 // Joint goals: refused with a reason, timed by the slowest, joined on, stopped, begun later.
-#include "services/joints/joint_trajectory.hpp"
+#include "core/robot/joint_trajectory.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-namespace eciton::joints {
+namespace eciton::robot {
 namespace {
 
-const robot::Airframe airframe = robot::legion();
+const Airframe airframe = legion();
 
 TEST(JointTrajectoryTest, MovesAllJointsTogetherAtTheDefaultRate) {
   JointTrajectory trajectory(airframe);
@@ -52,7 +52,7 @@ TEST(JointTrajectoryTest, AGoalMayBeginLaterAndThePresentMotionGoesOnUntilThen) 
 TEST(JointTrajectoryTest, StopsWithinTheAccelerationAndHolds) {
   JointTrajectory trajectory(airframe);
   ASSERT_FALSE(trajectory.go(std::array{0.8, 0.4}, 0, 0, 0));
-  const robot::ScalarMotion before = trajectory.at(0, 6);
+  const ScalarMotion before = trajectory.at(0, 6);
   trajectory.stop(6);
   EXPECT_NEAR(trajectory.at(0, 6).velocity, before.velocity, 1e-9);
   EXPECT_LT(trajectory.end_s(), 6.5);
@@ -74,8 +74,8 @@ TEST(JointTrajectoryTest, AChainTooTiltedIsRefused) {
 TEST(JointTrajectoryTest, EqualsTheMotionControlFeedsForward) {
   JointTrajectory trajectory(airframe);
   ASSERT_FALSE(trajectory.go(std::array{0.5, -0.3}, 0.2, 1, 1));
-  robot::JointMotion motion;
-  motion.go(std::array<robot::ScalarMotion, 2>{}, std::array{0.5, -0.3}, 1, 0.2, 0.5);
+  JointMotion motion;
+  motion.go(std::array<ScalarMotion, 2>{}, std::array{0.5, -0.3}, 1, 0.2, 0.5);
   for (double t = 0; t < 8; t += 0.37) {
     for (std::size_t k = 0; k < 2; ++k) {
       EXPECT_EQ(trajectory.at(k, t).position, motion.at(k, t).position);
@@ -85,4 +85,4 @@ TEST(JointTrajectoryTest, EqualsTheMotionControlFeedsForward) {
 }
 
 }  // namespace
-}  // namespace eciton::joints
+}  // namespace eciton::robot

@@ -1,12 +1,12 @@
 // Checks of joint goals.
-#include "services/joints/joint_limits.hpp"
+#include "core/robot/joint_limits.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
-namespace eciton::joints {
+namespace eciton::robot {
 
 const char* LimitFault::describe(char* text, std::size_t size) const {
   const std::size_t m = member + 1;
@@ -32,11 +32,11 @@ const char* LimitFault::describe(char* text, std::size_t size) const {
   return text;
 }
 
-std::optional<LimitFault> check_positions(const robot::Airframe& airframe, std::span<const double> position_rad) {
+std::optional<LimitFault> check_positions(const Airframe& airframe, std::span<const double> position_rad) {
   const std::size_t n = airframe.joints.size();
   const std::size_t members = n > 0 ? position_rad.size() / n : 0;
-  if (n == 0 || position_rad.empty() || position_rad.size() % n != 0 || members > robot::members_max) {
-    const std::size_t right = n * std::clamp<std::size_t>(members, 1, robot::members_max);
+  if (n == 0 || position_rad.empty() || position_rad.size() % n != 0 || members > members_max) {
+    const std::size_t right = n * std::clamp<std::size_t>(members, 1, members_max);
     return LimitFault{LimitKind::count, 0, 0, static_cast<double>(position_rad.size()), static_cast<double>(right)};
   }
   for (std::size_t k = 0; k < position_rad.size(); ++k) {
@@ -49,34 +49,34 @@ std::optional<LimitFault> check_positions(const robot::Airframe& airframe, std::
   return std::nullopt;
 }
 
-std::optional<LimitFault> check_rate(const robot::Airframe& airframe, double rate_rad_s) {
+std::optional<LimitFault> check_rate(const Airframe& airframe, double rate_rad_s) {
   double limit = 1e9;
-  for (const robot::JointGeometry& joint : airframe.joints) limit = std::min(limit, joint.rate_rad_s_max);
+  for (const JointGeometry& joint : airframe.joints) limit = std::min(limit, joint.rate_rad_s_max);
   if (rate_rad_s > 0 && rate_rad_s <= limit) return std::nullopt;
   return LimitFault{LimitKind::rate, 0, 0, rate_rad_s, limit};
 }
 
-ChainTilt chain_tilt(const robot::Airframe& airframe, std::size_t base, std::span<const double> position_rad) {
+ChainTilt chain_tilt(const Airframe& airframe, std::size_t base, std::span<const double> position_rad) {
   const std::size_t n = airframe.joints.size();
-  const std::size_t members = n > 0 ? std::min(position_rad.size() / n, robot::members_max) : 0;
+  const std::size_t members = n > 0 ? std::min(position_rad.size() / n, members_max) : 0;
   ChainTilt worst;
   if (base >= members || airframe.ports.size() < 2) return worst;
-  std::array<robot::Pose, robot::members_max> X;
-  robot::chain_poses(airframe, base, {}, position_rad, std::span(X).first(members));
+  std::array<Pose, members_max> X;
+  chain_poses(airframe, base, {}, position_rad, std::span(X).first(members));
   for (std::size_t i = 0; i < members; ++i) {
-    const robot::Vector3 up = X[i].R.col(2);
+    const Vector3 up = X[i].R.col(2);
     const double tilt = std::atan2(up.head<2>().norm(), up.z());
     if (tilt > worst.tilt_rad) worst = {i, tilt};
   }
   return worst;
 }
 
-std::optional<LimitFault> check_chain_tilt(const robot::Airframe& airframe, std::size_t base,
+std::optional<LimitFault> check_chain_tilt(const Airframe& airframe, std::size_t base,
                                            std::span<const double> from_rad, std::span<const double> to_rad,
                                            double tilt_rad_max) {
   // Pitch sums are linear on the way and greatest at its ends; with yaw between them they need not be.
   constexpr int parts = 16;
-  std::array<double, robot::coordinates_max> between{};
+  std::array<double, coordinates_max> between{};
   const std::size_t size = std::min({from_rad.size(), to_rad.size(), between.size()});
   // A chain already bent further may be straightened.
   const double limit = std::max(tilt_rad_max, chain_tilt(airframe, base, from_rad.first(size)).tilt_rad);
@@ -90,4 +90,4 @@ std::optional<LimitFault> check_chain_tilt(const robot::Airframe& airframe, std:
   return std::nullopt;
 }
 
-}  // namespace eciton::joints
+}  // namespace eciton::robot

@@ -8,7 +8,7 @@
 
 #include "core/robot/kinematics.hpp"
 
-namespace eciton::joints {
+namespace eciton::robot {
 
 enum class LimitKind { count, not_finite, position, rate, chain_tilt };
 
@@ -29,8 +29,8 @@ struct LimitFault {
 inline constexpr double chain_tilt_rad_max = 1.4;
 
 /// `position_rad` holds the joints of one or more members, one member after another.
-std::optional<LimitFault> check_positions(const robot::Airframe& airframe, std::span<const double> position_rad);
-std::optional<LimitFault> check_rate(const robot::Airframe& airframe, double rate_rad_s);
+std::optional<LimitFault> check_positions(const Airframe& airframe, std::span<const double> position_rad);
+std::optional<LimitFault> check_rate(const Airframe& airframe, double rate_rad_s);
 
 /// Greatest angle between a member's z axis and the base's; along a chain that bends in pitch alone, the
 /// greatest sum of pitch angles counted from the base. With the base level it is the tilt of the member.
@@ -38,11 +38,11 @@ struct ChainTilt {
   std::size_t member = 0;
   double tilt_rad = 0;
 };
-ChainTilt chain_tilt(const robot::Airframe& airframe, std::size_t base, std::span<const double> position_rad);
+ChainTilt chain_tilt(const Airframe& airframe, std::size_t base, std::span<const double> position_rad);
 
 /// On the straight way in joint space from one set of positions to another, both ends included.
-std::optional<LimitFault> check_chain_tilt(const robot::Airframe& airframe, std::size_t base,
+std::optional<LimitFault> check_chain_tilt(const Airframe& airframe, std::size_t base,
                                            std::span<const double> from_rad, std::span<const double> to_rad,
                                            double tilt_rad_max = chain_tilt_rad_max);
 
-}  // namespace eciton::joints
+}  // namespace eciton::robot

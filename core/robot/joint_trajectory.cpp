@@ -1,21 +1,21 @@
 // Joint goals: limits and timing around the quintics.
-#include "services/joints/joint_trajectory.hpp"
+#include "core/robot/joint_trajectory.hpp"
 
 #include <algorithm>
 #include <array>
 
-namespace eciton::joints {
+namespace eciton::robot {
 
-using robot::ScalarMotion;
+using ScalarMotion;
 
-JointTrajectory::JointTrajectory(const robot::Airframe& airframe, const JointTrajectoryConfig& config)
+JointTrajectory::JointTrajectory(const Airframe& airframe, const JointTrajectoryConfig& config)
     : airframe_(airframe), config_(config) {
-  const std::array<double, robot::joints_max> zero{};
+  const std::array<double, joints_max> zero{};
   reset(std::span(zero).first(std::min(airframe_.joints.size(), zero.size())), 0);
 }
 
 void JointTrajectory::reset(std::span<const double> position_rad, std::size_t base) {
-  present_ = robot::JointMotion(position_rad);
+  present_ = JointMotion(position_rad);
   has_next_ = false;
   base_ = base;
 }
@@ -29,8 +29,8 @@ std::optional<LimitFault> JointTrajectory::go(std::span<const double> goal_rad, 
   if (const auto fault = check_rate(airframe_, rate)) return fault;
   if (const auto fault = check_positions(airframe_, goal_rad)) return fault;
   const double begin_s = std::max(now_s, start_s);
-  std::array<ScalarMotion, robot::coordinates_max> from;
-  std::array<double, robot::coordinates_max> from_rad;
+  std::array<ScalarMotion, coordinates_max> from;
+  std::array<double, coordinates_max> from_rad;
   at(begin_s, from);
   for (std::size_t k = 0; k < size(); ++k) from_rad[k] = from[k].position;
   const std::span<const double> there = std::span(from_rad).first(size());
@@ -43,9 +43,9 @@ std::optional<LimitFault> JointTrajectory::go(std::span<const double> goal_rad, 
 }
 
 void JointTrajectory::stop(double now_s) {
-  std::array<ScalarMotion, robot::coordinates_max> from;
+  std::array<ScalarMotion, coordinates_max> from;
   at(now_s, from);
-  robot::JointMotion stopping;
+  JointMotion stopping;
   stopping.stop(std::span(from).first(size()), now_s, config_.acceleration_rad_s2_max);
   present_ = stopping;
   has_next_ = false;
@@ -60,10 +60,10 @@ void JointTrajectory::at(double t_s, std::span<ScalarMotion> out) const {
 }
 
 double JointTrajectory::end_s() const {
-  const robot::JointMotion& last = has_next_ ? next_ : present_;
+  const JointMotion& last = has_next_ ? next_ : present_;
   return last.start_s() + last.duration_s();
 }
 
 bool JointTrajectory::finished(double t_s) const { return t_s >= end_s(); }
 
-}  // namespace eciton::joints
+}  // namespace eciton::robot

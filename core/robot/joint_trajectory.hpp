@@ -7,9 +7,9 @@
 #include <span>
 
 #include "core/robot/minimum_jerk.hpp"
-#include "services/joints/joint_limits.hpp"
+#include "core/robot/joint_limits.hpp"
 
-namespace eciton::joints {
+namespace eciton::robot {
 
 struct JointTrajectoryConfig {
   double rate_rad_s = 0.12;  // default of a goal; the contact forces of a morph grow with it
@@ -21,7 +21,7 @@ struct JointTrajectoryConfig {
 /// construction; one thread. Times are seconds of any one clock.
 class JointTrajectory {
  public:
-  explicit JointTrajectory(const robot::Airframe& airframe, const JointTrajectoryConfig& config = {});
+  explicit JointTrajectory(const Airframe& airframe, const JointTrajectoryConfig& config = {});
 
   /// At rest at these positions; also tells how many joints there are and which member is the base.
   void reset(std::span<const double> position_rad, std::size_t base);
@@ -32,18 +32,18 @@ class JointTrajectory {
   /// To rest as soon as the acceleration allows, then hold.
   void stop(double now_s);
 
-  robot::ScalarMotion at(std::size_t joint, double t_s) const;
-  void at(double t_s, std::span<robot::ScalarMotion> out) const;
+  ScalarMotion at(std::size_t joint, double t_s) const;
+  void at(double t_s, std::span<ScalarMotion> out) const;
   std::size_t size() const { return present_.size(); }
   bool finished(double t_s) const;
   double end_s() const;
 
  private:
-  robot::Airframe airframe_;
+  Airframe airframe_;
   JointTrajectoryConfig config_;
   std::size_t base_ = 0;
-  robot::JointMotion present_, next_;
+  JointMotion present_, next_;
   bool has_next_ = false;
 };
 
-}  // namespace eciton::joints
+}  // namespace eciton::robot
