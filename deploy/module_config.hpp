@@ -58,7 +58,7 @@ struct ModuleConfig {
   HardwareConfig hal;
   estimation::EstimationConfig estimation;
   control::ControlConfig control;
-  docking::DockingConfig docking;
+  docking::DockingServiceConfig docking;
   joints::JointsConfig joints;
   radio::RadioConfig radio;
 
@@ -89,6 +89,12 @@ struct ModuleConfig {
   bus::ParticipantConfig module_participant(const std::string& process) const;
   bus::ParticipantConfig swarm_participant(const std::string& process) const;
 };
+
+/// The domain of a module's own ring unless its config names another.
+constexpr std::uint32_t module_ring_domain(std::uint32_t module_id) { return 10 + module_id; }
+
+/// Tells every part of the config whose it is, from `id` and `name`.
+void set_identity(ModuleConfig& config);
 
 /// Layers files and --set assignments, checks them and fills in what follows from the id.
 Result<ModuleConfig> load_module_config(const std::vector<std::string>& files,

@@ -30,12 +30,15 @@ template <Message T>
 TopicInfo info(const Topic<T>& topic) {
   using Traits = TypeTraits<T>;
   // The generator's names are literals, so they end with a zero.
-  return {topic.name,     topic.qos,
-          topic.scope,    topic.deadline,
-          topic.lifespan, {.name = Traits::name.data(),
-                           .size_max = Traits::size_max,
-                           .key_size = Traits::key_size,
-                           .key_hash = &key_hash_of_bytes<T>}};
+  return {topic.name,
+          topic.qos,
+          topic.scope,
+          topic.deadline,
+          topic.lifespan,
+          {.name = Traits::name.data(),
+           .size_max = Traits::size_max,
+           .key_size = Traits::key_size,
+           .key_hash = &key_hash_of_bytes<T>}};
 }
 
 /// The one mapping from QoS class to what a plugin is asked for.
@@ -58,6 +61,9 @@ class ReaderCore {
   virtual bool has_sample() const noexcept = 0;
   TimePoint newest_stamp() const noexcept { return newest_stamp_; }
 
+  /// Whether samples that come from now on signal the participant's waker; look for those already there by fetch().
+  void set_wakes(bool wakes) noexcept { wakes_.store(wakes); }
+
   const TopicInfo& topic() const { return topic_; }
   std::uint32_t matched() const;
   const ReaderStatistics& statistics() const { return statistics_; }
@@ -74,6 +80,7 @@ class ReaderCore {
   std::string name_;
   eciton_reader* handle_ = nullptr;
   std::atomic<bool> fresh_{true};
+  std::atomic<bool> wakes_;
 };
 
 class WriterCore {

@@ -13,16 +13,23 @@ eciton_qos plugin_qos(QosClass qos, bool keyed) {
   constexpr std::uint32_t instances_max = 64;  // 16 modules with four ports each
   const std::uint32_t instances = keyed ? instances_max : 1;
   switch (qos) {
-    case QosClass::sensor: return {0, 0, 1, instances};
-    case QosClass::command: return {1, 0, 1, instances};
-    case QosClass::state: return {1, 1, 1, instances};
-    case QosClass::event: return {1, 1, 64, instances};
+    case QosClass::sensor:
+      return {0, 0, 1, instances};
+    case QosClass::command:
+      return {1, 0, 1, instances};
+    case QosClass::state:
+      return {1, 1, 1, instances};
+    case QosClass::event:
+      return {1, 1, 64, instances};
   }
   return {};
 }
 
-Participant::Participant(const ParticipantConfig& config)
-    : config_(config), plugin_(value_or_throw(load_plugin(config.vendor))) {
+Participant::Participant(const ParticipantConfig& config, Waker* shared_waker)
+    : config_(config),
+      plugin_(value_or_throw(load_plugin(config.vendor))),
+      own_waker_(shared_waker == nullptr ? std::make_unique<Waker>() : nullptr),
+      waker_(shared_waker == nullptr ? own_waker_.get() : shared_waker) {
   std::vector<const char*> peers;
   for (const std::string& peer : config_.peers) peers.push_back(peer.c_str());
   const eciton_participant_config plugin_config{
@@ -31,7 +38,8 @@ Participant::Participant(const ParticipantConfig& config)
       .network_interface = config_.network_interface.c_str(),
       .peers = peers.data(),
       .peer_count = static_cast<std::uint32_t>(peers.size()),
-      .lease_ms = static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::milliseconds>(config_.lease).count())};
+      .lease_ms =
+          static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::milliseconds>(config_.lease).count())};
   std::array<char, 512> error{};
   handle_ = plugin_->participant_create(&plugin_config, error.data(), error.size());
   if (handle_ == nullptr) {
@@ -48,6 +56,11 @@ std::uint64_t Participant::dropped() const {
   return sum;
 }
 
+void Participant::set_all_wake(bool wake) {
+  readers_wake_ = wake;
+  for (ReaderCore* reader : readers_) reader->set_wakes(wake);
+}
+
 RawWriter Participant::create_raw_writer(const TopicInfo& topic) { return {*this, topic}; }
 RawReader Participant::create_raw_reader(const TopicInfo& topic) { return {*this, topic}; }
 
@@ -60,13 +73,15 @@ std::string failed(const char* what, const std::string& topic, const char* error
 }  // namespace
 
 ReaderCore::ReaderCore(Participant& participant, const TopicInfo& topic)
-    : participant_(participant), topic_(topic), name_(topic.name) {
+    : participant_(participant), topic_(topic), name_(topic.name), wakes_(participant.readers_wake_) {
   topic_.name = name_;
   const eciton_qos qos = plugin_qos(topic.qos, topic.type.key_size > 0);
   const eciton_wake wake{[](void* context) {
                            auto* reader = static_cast<ReaderCore*>(context);
-                           reader->fresh_.store(true, std::memory_order_release);
-                           reader->participant_.waker_.signal();
+                           // Sequentially consistent with set_wakes and the fetch that follows it: either we
+                           // see that it wakes, or that fetch sees the sample.
+                           reader->fresh_.store(true);
+                           if (reader->wakes_.load()) reader->participant_.waker_->signal();
                          },
                          this};
   std::array<char, 512> error{};
@@ -84,7 +99,7 @@ ReaderCore::~ReaderCore() {
 
 void ReaderCore::fetch() noexcept {
   // Cleared before the look: a sample that comes meanwhile sets it again.
-  if (!fresh_.exchange(false, std::memory_order_acq_rel)) return;
+  if (!fresh_.load() || !fresh_.exchange(false)) return;
   constexpr std::uint32_t batch = 32;
   constexpr int batches_max = 8;
   const auto sink = [](void* context, const std::uint8_t* cdr, std::uint32_t size) {
@@ -119,7 +134,7 @@ bool WriterCore::write(std::span<const std::uint8_t> cdr) noexcept {
   for (ReaderCore* reader : participant_.readers_) {
     if (reader->name_ != name_) continue;
     reader->accept(cdr);
-    participant_.waker_.signal();
+    if (reader->wakes_.load()) participant_.waker_->signal();
   }
   return accepted;
 }

@@ -26,14 +26,15 @@ struct ParticipantConfig {
   std::uint32_t domain = 0;
   std::string name = "eciton";
   std::string network_interface = "lo";
-  std::vector<std::string> peers;  // none: multicast
+  std::vector<std::string> peers{};  // none: multicast
   Duration lease = std::chrono::seconds(3);
 };
 
 class Participant {
  public:
-  /// Loads the vendor's plugin and joins the domain; throws BadInput naming what is wrong.
-  explicit Participant(const ParticipantConfig& config);
+  /// Loads the vendor's plugin and joins the domain; throws BadInput naming what is wrong. One thread that waits
+  /// for several participants gives the first one's waker to the others (it must outlive them).
+  explicit Participant(const ParticipantConfig& config, Waker* shared_waker = nullptr);
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
@@ -63,9 +64,11 @@ class Participant {
     return module_id < clock_offset_.size() ? clock_offset_[module_id] : Duration{};
   }
 
-  /// Signalled when a reader of this participant may have samples.
-  Waker& waker() { return waker_; }
-  /// From another thread or a composed participant: signal that one's waker instead.
+  /// Signalled when a reader of this participant may have samples, unless it was told not to wake.
+  Waker& waker() { return *waker_; }
+  /// Whether its readers, those to come included, signal the waker; ReaderCore::set_wakes says it of one. An
+  /// executor is woken only by what it waits for. At first they do.
+  void set_all_wake(bool wake);
   const ParticipantConfig& config() const { return config_; }
   const char* vendor_version() const { return plugin_->version; }
   /// Over all its readers, those gone included.
@@ -78,7 +81,9 @@ class Participant {
   ParticipantConfig config_;
   const eciton_plugin* plugin_;
   eciton_participant* handle_ = nullptr;
-  Waker waker_;
+  std::unique_ptr<Waker> own_waker_;
+  Waker* waker_;
+  bool readers_wake_ = true;
   TimePoint now_{};
   std::array<Duration, 128> clock_offset_{};
   std::vector<ReaderCore*> readers_;

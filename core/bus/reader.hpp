@@ -45,6 +45,14 @@ class Reader {
     return newest;
   }
 
+  /// From here on samples of other modules are not heard: where peers' samples, which the radio puts on the ring,
+  /// must neither trigger a step nor count as news.
+  void accept_only(std::uint32_t module_id)
+    requires requires(T sample) { sample.module_id; }
+  {
+    core_->inbox.accept_only(module_id);
+  }
+
   /// Whether the newest sample that came is older than the topic's deadline, or none came yet.
   bool overdue() const { return core_->participant().now() - core_->newest_stamp() > core_->topic().deadline; }
 

@@ -2,12 +2,18 @@
 // new value of this struct. Frame B: body axes at the nominal centre of mass (joints at zero).
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "core/robot/frames.hpp"
 
 namespace eciton::robot {
+
+// Bounds of everything that is sized once and for all.
+inline constexpr std::size_t rotors_max = 8;    // of one module
+inline constexpr std::size_t joints_max = 8;    // of one module
+inline constexpr std::size_t members_max = 16;  // of one chain
 
 struct RotorGeometry {
   Vector3 p_BR_m;

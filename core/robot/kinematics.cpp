@@ -24,6 +24,21 @@ Vector3 com_offset_B(const Airframe& airframe, std::span<const double> joint_rad
   return moved / airframe.mass_kg;
 }
 
+ComMotion com_motion_B(const Airframe& airframe, std::span<const ScalarMotion> joints) {
+  ComMotion out;
+  for (std::size_t k = 0; k < airframe.joints.size(); ++k) {
+    const JointGeometry& joint = airframe.joints[k];
+    const double share = joint.link_mass_kg / airframe.mass_kg;
+    const Vector3 arm = joint_rotation(joint, joints[k].position) * joint.p_JL_m;
+    const Vector3 across = joint.axis_B.cross(arm);
+    out.c_B += share * (arm - joint.p_JL_m);
+    out.c_rate_B += share * joints[k].velocity * across;
+    out.c_acceleration_B += share * (joints[k].acceleration * across +
+                                     joints[k].velocity * joints[k].velocity * joint.axis_B.cross(across));
+  }
+  return out;
+}
+
 Matrix3 composite_inertia(const Airframe& airframe, std::span<const double> joint_rad) {
   // About B's origin: take each link away where it was at zero and put it where it is now; then to the
   // composite centre of mass by the parallel-axis theorem.

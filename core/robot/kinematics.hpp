@@ -4,11 +4,20 @@
 #include <span>
 
 #include "core/robot/airframe.hpp"
+#include "core/robot/minimum_jerk.hpp"
 
 namespace eciton::robot {
 
 /// Offset of the composite centre of mass from B's origin, body axes, m.
 Vector3 com_offset_B(const Airframe& airframe, std::span<const double> joint_rad);
+
+/// Offset of the composite centre of mass while the joints move: with its rates, seen from B, body axes.
+struct ComMotion {
+  Vector3 c_B = Vector3::Zero();
+  Vector3 c_rate_B = Vector3::Zero();
+  Vector3 c_acceleration_B = Vector3::Zero();
+};
+ComMotion com_motion_B(const Airframe& airframe, std::span<const ScalarMotion> joints);
 
 /// Inertia of the whole module about its composite centre of mass, body axes, kg m^2.
 Matrix3 composite_inertia(const Airframe& airframe, std::span<const double> joint_rad);

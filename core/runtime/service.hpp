@@ -16,9 +16,9 @@ enum class Phase { sense, estimate, coordinate, control, act };
 
 /// When a service steps: at its own period, or when a reader has a sample.
 struct Schedule {
-  Duration period{};                  // periodic: 0 < period
-  bus::ReaderCore* trigger = nullptr; // triggered: step when it has a sample ...
-  Duration at_most{};                 // ... at the latest this long after the last step
+  Duration period{};                   // periodic: 0 < period
+  bus::ReaderCore* trigger = nullptr;  // triggered: step when it has a sample ...
+  Duration at_most{};                  // ... at the latest this long after the last step
   Phase phase = Phase::coordinate;
 };
 

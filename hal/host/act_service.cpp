@@ -37,14 +37,14 @@ void ActService::step(TimePoint now) noexcept {
 
 void ActService::take_commands(TimePoint now) noexcept {
   while (const auto command = rotor_command_.take()) {
-    if (command->module_id != config_.module_id || command->rotors.size() != devices_.rotor_count) continue;
+    if (command->value.module_id != config_.module_id || command->value.rotors.size() != devices_.rotor_count) continue;
     if (descent_.phase() != robot::SafePhase::idle) {
       report(now, msg::Severity::warning, "commands came back: the safe output ends");
       descent_.reset();
     }
     last_ = command->value;
     last_command_ = now;
-    set_armed(command->armed, now);
+    set_armed(command->value.armed, now);
   }
 }
 
@@ -109,33 +109,33 @@ void ActService::write_safe_output(TimePoint now) noexcept {
 
 void ActService::watch_attitude() noexcept {
   while (const auto imu = imu_.take()) {
-    if (imu->module_id != config_.module_id) continue;
-    const TimePoint stamp = from_ns(imu->stamp_ns);
+    if (imu->value.module_id != config_.module_id) continue;
+    const TimePoint stamp = from_ns(imu->value.stamp_ns);
     const double dt_s = std::clamp(to_s(stamp - last_imu_), 0.0, 0.02);
     last_imu_ = stamp;
-    specific_force_M_ = robot::vector(imu->specific_force_M_m_s2);
-    attitude_.update(robot::vector(imu->w_WM_M_rad_s), specific_force_M_, dt_s);
+    specific_force_M_ = robot::vector(imu->value.specific_force_M_m_s2);
+    attitude_.update(robot::vector(imu->value.w_WM_M_rad_s), specific_force_M_, dt_s);
   }
   while (const auto state = module_state_.take()) {
     // While the estimator lives its attitude is better; when control is lost the filter goes on from it.
-    if (state->module_id == config_.module_id && state->mode == msg::EstimatorMode::ready) {
-      attitude_.set(robot::rotation(state->q_WM));
+    if (state->value.module_id == config_.module_id && state->value.mode == msg::EstimatorMode::ready) {
+      attitude_.set(robot::rotation(state->value.q_WM));
     }
   }
 }
 
 void ActService::write_joints_and_latches() noexcept {
   while (const auto command = joint_command_.take()) {
-    if (command->module_id != config_.module_id || command->joints.size() != devices_.joint_count) continue;
+    if (command->value.module_id != config_.module_id || command->value.joints.size() != devices_.joint_count) continue;
     std::array<JointSetpoint, robot::joints_max> setpoints{};
-    for (std::size_t k = 0; k < command->joints.size(); ++k) {
-      setpoints[k] = {command->joints[k].position_rad, command->joints[k].velocity_rad_s};
+    for (std::size_t k = 0; k < command->value.joints.size(); ++k) {
+      setpoints[k] = {command->value.joints[k].position_rad, command->value.joints[k].velocity_rad_s};
     }
     devices_.joints->write(std::span(setpoints).first(devices_.joint_count));
   }
   while (const auto command = latch_command_.take()) {
-    if (command->module_id != config_.module_id || command->port >= devices_.latches.size()) continue;
-    devices_.latches[command->port]->write(command->engage);
+    if (command->value.module_id != config_.module_id || command->value.port >= devices_.latches.size()) continue;
+    devices_.latches[command->value.port]->write(command->value.engage);
   }
 }
 

@@ -9,7 +9,7 @@
 #include "core/robot/attitude_filter.hpp"
 #include "core/robot/safe_descent.hpp"
 #include "core/runtime/service.hpp"
-#include "hal/host/devices.hpp"
+#include "hal/devices.hpp"
 #include "idl/topics.hpp"
 
 namespace eciton::hal {

@@ -6,7 +6,7 @@
 
 #include "core/bus/participant.hpp"
 #include "core/runtime/service.hpp"
-#include "hal/host/devices.hpp"
+#include "hal/devices.hpp"
 #include "idl/topics.hpp"
 
 namespace eciton::hal {

@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-#include "generator.h"
+#include "idl/generator/generator.h"
 
 enum { KEY_SIZE_MAX = 16 };  // a longer key would travel as its MD5
 

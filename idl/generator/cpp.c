@@ -2,7 +2,7 @@
 // specialisations of the traits in core/bus/type_traits.hpp.
 #include <string.h>
 
-#include "generator.h"
+#include "idl/generator/generator.h"
 
 // C++ spells an enumerator that is a keyword there with an underscore after it; its name stays as it is.
 static name_t cpp_enumerator(const idl_enum_t* node, const idl_enumerator_t* enumerator) {
@@ -168,8 +168,8 @@ static void print_includes(FILE* out, const idl_pstate_t* pstate) {
 
 void print_header(FILE* out, const idl_pstate_t* pstate) {
   fprintf(out,
-          "// Generated from idl/%s by idl/generator: change that file, not this one. Types of the wire contract\n"
-          "// as plain structs, and what the bus and the tools know about them.\n"
+          "// Generated from %s by idl/generator: change that file, not this one. Types of the wire contract as\n"
+          "// plain structs, and what the bus and the tools know about them.\n"
           "#pragma once\n\n",
           file_name(pstate->sources->path->name));
   print_includes(out, pstate);

@@ -1,11 +1,11 @@
 // Entry point of the back end: idlc parses, then calls `generate`. A header is written only if its
 // content changes, so that an edited comment in one IDL file does not rebuild the world.
+#include <idl/file.h>
+#include <idlc/generator.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator.h"
-#include "idl/file.h"
-#include "idlc/generator.h"
+#include "idl/generator/generator.h"
 
 static bool holds(const char* path, const char* text, size_t size) {
   FILE* file = fopen(path, "rb");

@@ -3,12 +3,11 @@
 #ifndef ECITON_IDL_GENERATOR_GENERATOR_H_
 #define ECITON_IDL_GENERATOR_GENERATOR_H_
 
+#include <idl/processor.h>
+#include <idl/tree.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
-
-#include "idl/processor.h"
-#include "idl/tree.h"
 
 /// DDS limits type names to 256 characters with their end; the contract refuses longer ones.
 enum { NAME_SIZE_MAX = 256 };

@@ -1,6 +1,6 @@
 // Reprints one struct from the syntax tree as IDL that stands alone: what it needs comes first. Tools
 // that meet the type on the wire or in a recording need no other file to read it.
-#include "generator.h"
+#include "idl/generator/generator.h"
 
 // Depth first, so that each definition follows what it uses.
 static void collect(node_list_t* definitions, const idl_type_spec_t* type) {

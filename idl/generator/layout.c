@@ -1,6 +1,6 @@
 // Sizes on the wire: plain CDR as in XCDR version 1, everything aligned to its own size from the end of
 // the encapsulation header on. Where an element ends grows with where it starts, so full bounds are greatest.
-#include "generator.h"
+#include "idl/generator/generator.h"
 
 static size_t align(size_t offset, size_t alignment) { return (offset + alignment - 1) / alignment * alignment; }
 

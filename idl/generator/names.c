@@ -3,7 +3,7 @@
 #include <ctype.h>
 #include <string.h>
 
-#include "generator.h"
+#include "idl/generator/generator.h"
 
 static void append(name_t* name, const char* text) {
   const size_t used = strlen(name->text);

@@ -2,7 +2,7 @@
 // to do then.
 #include <stdlib.h>
 
-#include "generator.h"
+#include "idl/generator/generator.h"
 
 void append_node(node_list_t* list, const void* node) {
   const idl_node_t** nodes = realloc(list->nodes, (list->size + 1) * sizeof *nodes);

@@ -1,6 +1,6 @@
 // The primitive types of the wire contract: one row each, from idlc's type to size, C++ and IDL. Types
 // that idlc spells in two ways (long, int32) are reprinted in the one that shows the width.
-#include "generator.h"
+#include "idl/generator/generator.h"
 
 static const primitive_t primitives[] = {
     {IDL_BOOL, 1, "bool", "boolean"},           {IDL_CHAR, 1, "char", "char"},

@@ -2,13 +2,16 @@
 // byte for byte, within their rates; sends the beacon; knows every peer's clock.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
+#include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
 #include "core/runtime/service.hpp"
 #include "idl/topics.hpp"
 #include "services/radio/airtime.hpp"
+#include "services/radio/duplicate_id.hpp"
 #include "services/radio/peer_clock.hpp"
 
 namespace eciton::radio {
@@ -41,6 +44,7 @@ struct RadioConfig {
 class RadioService final : public runtime::Service {
  public:
   RadioService(bus::Participant& ring, bus::Participant& swarm, const RadioConfig& config);
+  ~RadioService() override;
 
   std::string_view name() const override { return "radio"; }
   runtime::Schedule schedule() override { return runtime::every(from_s(config_.period_s), runtime::Phase::coordinate); }
@@ -49,11 +53,13 @@ class RadioService final : public runtime::Service {
  private:
   struct Route;
 
-  void add_route(const bus::TopicInfo& topic, double rate_Hz, bool goal, bool near_only);
+  void add_route(const bus::TopicInfo& topic);
   void forward_out(Route& route) noexcept;
   void forward_in(Route& route) noexcept;
-  void watch_own_docking() noexcept;
+  void watch_own_module() noexcept;
   void hear_beacons(TimePoint now) noexcept;
+  void meet_own_id(const msg::Beacon& beacon, TimePoint now) noexcept;
+  void note_echo(const msg::Beacon& beacon, TimePoint now) noexcept;
   void send_beacon(TimePoint now) noexcept;
 
   RadioConfig config_;
@@ -64,20 +70,25 @@ class RadioService final : public runtime::Service {
   TimePoint beacon_due_{};
   bool near_ = false;       // approaching or in a chain: wrenches go out
   bool docking_ = false;
+  bool courted_ = false;    // a peer approaches us
   bool chained_ = false;
+  DuplicateId own_id_;
   bool duplicate_id_ = false;
   Airtime airtime_;
   std::uint64_t sent_ = 0;
   std::uint64_t dropped_ = 0;
   msg::Beacon beacon_;
+  std::array<PeerClock, 128> clocks_;  // by module id
 
   bus::Reader<msg::DockingState> docking_state_;
   bus::Reader<msg::ChainView> chain_view_;
   bus::Reader<msg::ModuleState> module_state_;
+  bus::Reader<msg::ExternalWrench> external_wrench_;
   bus::Reader<msg::Heartbeat> heartbeat_;
   bus::Reader<msg::Beacon> beacons_heard_;
   bus::Writer<msg::Beacon> beacon_to_swarm_;
   bus::Writer<msg::Beacon> beacon_to_ring_;
+  bus::Writer<msg::Fault> fault_;
 };
 
 }  // namespace eciton::radio

@@ -1,0 +1,161 @@
+// When services fall due, and what is done around each step.
+#include "core/runtime/service_group.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "core/base/contract.hpp"
+#include "core/base/wall_clock.hpp"
+#include "core/runtime/name_key.hpp"
+#include "idl/topics.hpp"
+
+namespace eciton::runtime {
+
+namespace {
+
+void check(const Service& service, const Schedule& schedule, const std::string& process) {
+  const std::string who = "service " + std::string(service.name()) + " of " + process + ": ";
+  if (service.name().empty() || service.name().size() > decltype(msg::Heartbeat::service)::bound()) {
+    throw BadInput{{who + "its name must have 1 to 31 characters"}};
+  }
+  if (schedule.trigger == nullptr && schedule.period <= Duration::zero()) {
+    throw BadInput{{who + "a periodic schedule needs a period over zero"}};
+  }
+  if (schedule.trigger != nullptr && schedule.at_most <= Duration::zero()) {
+    throw BadInput{{who + "a schedule on topic " + std::string(schedule.trigger->topic().name) +
+                    " needs an at_most over zero: the longest it may go without a step"}};
+  }
+}
+
+}  // namespace
+
+ServiceGroup::ServiceGroup(const ExecutorConfig& config, std::vector<bus::Participant*> participants, Pacing pacing)
+    : config_(config), participants_(std::move(participants)), pacing_(pacing) {
+  if (participants_.empty()) throw BadInput{{"process " + config_.process + ": an executor needs a participant"}};
+  for (const bus::Participant* participant : participants_) {
+    ECITON_EXPECT(&const_cast<bus::Participant*>(participant)->waker() == &waker(),
+                  "the participants of one executor share one waker: give the first one's to the others");
+  }
+  if (config_.heartbeat_period > Duration::zero()) {
+    heartbeat_.emplace(module_ring().create_writer(topics::heartbeat));
+  }
+}
+
+ServiceGroup::Entry& ServiceGroup::add(Service& service, Pace at) {
+  const Schedule schedule = service.schedule();
+  check(service, schedule, config_.process);
+  for (const auto& other : entries_) {
+    if (other->service->name() == service.name()) {
+      throw BadInput{{"process " + config_.process + " has two services named " + std::string(service.name())}};
+    }
+  }
+  auto entry = std::make_unique<Entry>();
+  entry->service = &service;
+  entry->schedule = schedule;
+  entry->next_due = entry->triggered() ? at + schedule.at_most : at;
+  fill_constant_fields(*entry);
+  const auto place = std::upper_bound(entries_.begin(), entries_.end(), schedule.phase,
+                                      [](Phase phase, const auto& other) { return phase < other->schedule.phase; });
+  return **entries_.insert(place, std::move(entry));
+}
+
+void ServiceGroup::remove(const Service& service) {
+  std::erase_if(entries_, [&](const auto& entry) { return entry->service == &service; });
+}
+
+void ServiceGroup::fill_constant_fields(Entry& entry) {
+  msg::Heartbeat& heartbeat = entry.heartbeat;
+  heartbeat.module_id = config_.module_id;
+  heartbeat.service_key = name_key(entry.service->name());
+  heartbeat.service = entry.service->name();
+  heartbeat.vendor = std::string_view(module_ring().config().vendor);
+  heartbeat.pid = pacing_ != Pacing::simulated ? static_cast<std::uint32_t>(::getpid()) : 0;
+}
+
+void ServiceGroup::start(Pace at) {
+  if (heartbeat_) next_heartbeat_ = at;
+  for (const auto& entry : entries_) entry->next_due = entry->triggered() ? at + entry->schedule.at_most : at;
+}
+
+void ServiceGroup::mute() {
+  for (bus::Participant* participant : participants_) participant->set_all_wake(false);
+}
+
+void ServiceGroup::wake_by_triggers() {
+  for (const auto& entry : entries_) {
+    if (entry->triggered()) entry->schedule.trigger->set_wakes(true);
+  }
+}
+
+bool ServiceGroup::due(Entry& entry, Pace at) noexcept {
+  if (entry.suspended) return false;
+  if (entry.triggered()) {
+    bus::ReaderCore& trigger = *entry.schedule.trigger;
+    trigger.fetch();
+    if (trigger.has_sample() && trigger.statistics().received != entry.received) return true;
+  }
+  return at >= entry.next_due;
+}
+
+Pace ServiceGroup::step(Entry& entry, Pace at, TimePoint now) noexcept {
+  for (bus::Participant* participant : participants_) participant->set_now(now);
+  bool sampled = false;
+  if (entry.triggered()) {
+    sampled = entry.schedule.trigger->has_sample();
+    entry.received = entry.schedule.trigger->statistics().received;
+  }
+  const bool measured = pacing_ != Pacing::simulated;
+  const Duration before = measured ? monotonic_now() : Duration::zero();
+  entry.service->step(now);
+  const Duration execution = measured ? monotonic_now() - before : Duration::zero();
+  entry.statistics.record(at, execution);
+  if (entry.triggered()) {
+    if (!sampled) entry.statistics.count_timeout();
+    if (pacing_ == Pacing::wall_clock && execution > entry.schedule.at_most) entry.statistics.count_overruns(1);
+    entry.next_due = at + entry.schedule.at_most;
+  } else {
+    const Duration period = entry.schedule.period;
+    const std::int64_t skipped = std::max(at - entry.next_due, Duration::zero()) / period;
+    entry.statistics.count_overruns(static_cast<std::uint64_t>(skipped));
+    entry.next_due += (skipped + 1) * period;
+  }
+  return at + execution;
+}
+
+void ServiceGroup::beat_if_due(Pace at, TimePoint now) noexcept {
+  if (at < next_heartbeat_) return;
+  next_heartbeat_ += ((at - next_heartbeat_) / config_.heartbeat_period + 1) * config_.heartbeat_period;
+  std::uint64_t dropped = 0;
+  for (const bus::Participant* participant : participants_) dropped += participant->dropped();
+  for (const auto& entry : entries_) {
+    if (entry->suspended) continue;
+    msg::Heartbeat& heartbeat = entry->heartbeat;
+    heartbeat.stamp_ns = to_ns(now);
+    heartbeat.dropped = dropped;
+    heartbeat.lifecycle = msg::Lifecycle::active;
+    entry->statistics.fill(heartbeat, at);
+    entry->service->describe(heartbeat);
+    heartbeat_->write(heartbeat);
+  }
+}
+
+Pace ServiceGroup::next_step_due() const noexcept {
+  Pace next = Pace::max();
+  for (const auto& entry : entries_) next = std::min(next, entry->next_due);
+  return next;
+}
+
+Pace ServiceGroup::next_due() const noexcept { return std::min(next_step_due(), next_heartbeat_); }
+
+bool ServiceGroup::has_triggers() const {
+  return std::any_of(entries_.begin(), entries_.end(), [](const auto& entry) { return entry->triggered(); });
+}
+
+std::string ServiceGroup::table() const {
+  std::string text = CycleStatistics::table_heading() + "\n";
+  for (const auto& entry : entries_) text += entry->statistics.table_line(entry->service->name()) + "\n";
+  return text;
+}
+
+}  // namespace eciton::runtime

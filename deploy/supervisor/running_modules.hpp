@@ -1,0 +1,36 @@
+// What runs on this host, as its launches wrote it down in their runtime directories.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "deploy/supervisor/runtime_directory.hpp"
+
+namespace eciton::deploy {
+
+inline constexpr const char* state_file_name = "state.json";
+
+struct RunningProcess {
+  std::string name;
+  std::string vendor;
+  pid_t pid = 0;  // 0: it does not run at the moment
+  std::uint32_t restarts = 0;
+};
+
+struct RunningModule {
+  std::string name;
+  pid_t holder = 0;
+  std::uint32_t module_id = 0;  // 0: a world or a demo
+  std::uint32_t domain = 0;
+  std::string network_interface;
+  std::vector<RunningProcess> processes;
+};
+
+std::string to_text(const RunningModule& module);
+/// Those whose holder lives, by name; what cannot be read is left out.
+std::vector<RunningModule> running_modules(const std::filesystem::path& root = runtime_root());
+
+}  // namespace eciton::deploy

@@ -1,0 +1,141 @@
+// Start, watch, restart, stop.
+#include "deploy/supervisor/supervisor.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <ctime>
+
+namespace eciton::deploy {
+namespace {
+
+constexpr int bad_input = 2;
+
+Duration monotonic() {
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
+}
+
+}  // namespace
+
+Supervisor::Supervisor(SupervisorConfig config, Clock clock)
+    : config_(std::move(config)), clock_(clock ? std::move(clock) : monotonic) {}
+
+Supervisor::~Supervisor() { stop_all(); }
+
+Status Supervisor::start(const ChildSpec& spec) {
+  auto child = std::make_unique<Child>();
+  child->spec = spec;
+  child->report.name = spec.name;
+  child->backoff = config_.backoff_min;
+  if (const Status status = launch(*child); !status) return status;
+  children_.push_back(std::move(child));
+  return ok();
+}
+
+Status Supervisor::launch(Child& child) {
+  Result<ChildProcess> process = ChildProcess::start({.arguments = child.spec.arguments,
+                                                      .environment = child.spec.environment,
+                                                      .log_file = log_file(child.spec.name)});
+  if (!process) return process.error();
+  child.process.emplace(std::move(process).value());
+  child.report.pid = child.process->pid();
+  child.report.state = ChildState::running;
+  child.started = clock_();
+  return ok();
+}
+
+void Supervisor::note_end(Child& child, const ProcessEnd& end) {
+  const Duration now = clock_();
+  child.process.reset();
+  child.report.last_end = end;
+  const auto lines = last_lines(log_file(child.spec.name), 1);
+  child.report.last_words = lines.empty() ? "" : lines.back();
+  if (end.signal == 0 && end.exit_status == bad_input) {
+    child.report.state = ChildState::refused;
+    return;
+  }
+  if (now - child.started >= config_.steady) child.backoff = config_.backoff_min;
+  child.report.state = ChildState::waiting;
+  child.restart_at = now + child.backoff;
+  child.backoff = std::min(2 * child.backoff, config_.backoff_max);
+}
+
+void Supervisor::check(const std::function<void(const ChildReport&)>& on_end) {
+  for (const auto& child : children_) {
+    if (child->process) {
+      const auto end = child->process->take_end();
+      if (!end) continue;
+      note_end(*child, *end);
+      if (on_end) on_end(child->report);
+    } else if (child->report.state == ChildState::waiting && clock_() >= child->restart_at) {
+      ++child->report.restarts;
+      if (const Status status = launch(*child); !status) {
+        child->report.last_words = status.error().message;
+        child->restart_at = clock_() + child->backoff;
+        child->backoff = std::min(2 * child->backoff, config_.backoff_max);
+      }
+    }
+  }
+}
+
+void Supervisor::add_descriptors(std::vector<pollfd>& descriptors) const {
+  for (const auto& child : children_) {
+    if (child->process) descriptors.push_back({child->process->file_descriptor(), POLLIN, 0});
+  }
+}
+
+std::optional<Duration> Supervisor::next_restart() const {
+  std::optional<Duration> next;
+  for (const auto& child : children_) {
+    if (child->report.state != ChildState::waiting) continue;
+    if (!next || child->restart_at < *next) next = child->restart_at;
+  }
+  return next;
+}
+
+void Supervisor::stop_all() {
+  const Duration patience_end = monotonic() + config_.stop_patience;
+  for (const auto& child : children_) {
+    if (child->process) child->process->signal(SIGTERM);
+  }
+  while (true) {
+    std::vector<pollfd> descriptors;
+    for (const auto& child : children_) {
+      if (!child->process) continue;
+      if (const auto end = child->process->take_end()) {
+        child->report.last_end = *end;
+        child->process.reset();
+      } else {
+        descriptors.push_back({child->process->file_descriptor(), POLLIN, 0});
+      }
+    }
+    const Duration left = patience_end - monotonic();
+    if (descriptors.empty() || left <= Duration::zero()) break;
+    wait_for(descriptors, left);
+  }
+  for (const auto& child : children_) {
+    if (child->process) child->report.last_end = ProcessEnd{.signal = SIGKILL};
+    child->process.reset();  // kills and reaps it
+    child->report.state = ChildState::stopped;
+  }
+}
+
+std::vector<ChildReport> Supervisor::reports() const {
+  std::vector<ChildReport> reports;
+  for (const auto& child : children_) reports.push_back(child->report);
+  return reports;
+}
+
+bool Supervisor::all_running() const {
+  return std::all_of(children_.begin(), children_.end(),
+                     [](const auto& child) { return child->report.state == ChildState::running; });
+}
+
+void wait_for(std::vector<pollfd>& descriptors, Duration timeout) {
+  const auto ns = std::max<Duration::rep>(timeout.count(), 0);
+  const timespec t{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+  ::ppoll(descriptors.data(), descriptors.size(), &t, nullptr);
+}
+
+}  // namespace eciton::deploy

@@ -1,0 +1,97 @@
+// Keeps a set of child processes running: restarts what ends, with a back-off; ends them all in a bounded
+// time. One thread; it never waits except in stop_all.
+#pragma once
+
+#include <poll.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deploy/supervisor/child_process.hpp"
+
+namespace eciton::deploy {
+
+struct ChildSpec {
+  std::string name;  // also of its log file
+  std::vector<std::string> arguments;
+  std::vector<std::pair<std::string, std::string>> environment{};
+};
+
+struct SupervisorConfig {
+  std::filesystem::path log_directory;
+  Duration backoff_min = std::chrono::milliseconds(250);  // doubles with each restart ...
+  Duration backoff_max = std::chrono::seconds(5);         // ... up to this
+  Duration steady = std::chrono::seconds(10);             // one that ran so long starts from backoff_min again
+  Duration stop_patience = std::chrono::seconds(5);       // from SIGTERM to SIGKILL
+};
+
+enum class ChildState {
+  running,
+  waiting,  // for its restart
+  refused,  // exit status 2, bad input: another start would end alike
+  stopped
+};
+
+struct ChildReport {
+  std::string name;
+  ChildState state = ChildState::stopped;
+  pid_t pid = 0;  // of the last start
+  std::uint32_t restarts = 0;
+  std::optional<ProcessEnd> last_end;
+  std::string last_words;  // the last line it wrote before it ended by itself
+};
+
+class Supervisor {
+ public:
+  using Clock = std::function<Duration()>;  // monotonic
+
+  explicit Supervisor(SupervisorConfig config, Clock clock = {});
+  ~Supervisor();
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
+
+  /// Starts one more child. An Error when its program cannot be executed.
+  Status start(const ChildSpec& spec);
+
+  /// Looks after the children: takes ends, restarts what is due. Tells of every end through `on_end`.
+  void check(const std::function<void(const ChildReport&)>& on_end = {});
+  /// What becomes readable when a child ends.
+  void add_descriptors(std::vector<pollfd>& descriptors) const;
+  /// When the next restart is due, on the monotonic clock.
+  std::optional<Duration> next_restart() const;
+
+  /// SIGTERM to all, a bounded wait, SIGKILL to what still runs. Nothing runs afterwards.
+  void stop_all();
+
+  const SupervisorConfig& config() const { return config_; }
+  std::vector<ChildReport> reports() const;
+  bool all_running() const;
+  std::filesystem::path log_file(const std::string& child) const { return config_.log_directory / (child + ".log"); }
+
+ private:
+  struct Child {
+    ChildSpec spec;
+    std::optional<ChildProcess> process;
+    ChildReport report;
+    Duration started{};
+    Duration backoff{};
+    Duration restart_at{};
+  };
+
+  Status launch(Child& child);
+  void note_end(Child& child, const ProcessEnd& end);
+
+  SupervisorConfig config_;
+  Clock clock_;
+  std::vector<std::unique_ptr<Child>> children_;
+};
+
+/// Waits until one of the descriptors is readable or for `timeout`.
+void wait_for(std::vector<pollfd>& descriptors, Duration timeout);
+
+}  // namespace eciton::deploy

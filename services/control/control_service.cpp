@@ -1,0 +1,390 @@
+// take(); reference; control; allocate; write.
+#include "services/control/control_service.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/robot/arrays.hpp"
+
+namespace eciton::control {
+namespace {
+
+ContactLaw contact_law(const std::string& name) {
+  return name == "none" ? ContactLaw::none : name == "paper" ? ContactLaw::paper : ContactLaw::local;
+}
+
+constexpr Duration law_silence = std::chrono::milliseconds(300);  // without an estimate: the feed-forward fades
+
+robot::Pose pose_of(const msg::ModuleState& s) { return {robot::vector(s.p_WM_m), robot::rotation(s.q_WM)}; }
+
+/// The heading of a pose without its roll and pitch.
+robot::Matrix3 upright(const robot::Matrix3& R) {
+  return Eigen::AngleAxisd(std::atan2(R(1, 0), R(0, 0)), robot::Vector3::UnitZ()).toRotationMatrix();
+}
+
+}  // namespace
+
+ControlService::ControlService(bus::Participant& ring, const ControlConfig& config, const robot::Airframe& airframe)
+    : config_(config),
+      airframe_(airframe),
+      reference_(airframe, {.speed_m_s = config.speed_m_s}),
+      law_({.law = contact_law(config.law), .observer_gain_1_s = config.observer_gain_1_s}),
+      allocator_(airframe),
+      module_state_(ring.create_reader(topics::module_state)),
+      joint_state_(ring.create_reader(topics::joint_state)),
+      external_wrench_(ring.create_reader(topics::external_wrench)),
+      contact_wrench_(ring.create_reader(topics::contact_wrench)),
+      chain_view_(ring.create_reader(topics::chain_view)),
+      docking_state_(ring.create_reader(topics::docking_state)),
+      beacon_(ring.create_reader(topics::beacon)),
+      mode_request_(ring.create_reader(topics::mode_request)),
+      flight_goal_(ring.create_reader(topics::flight_goal)),
+      morph_goal_(ring.create_reader(topics::morph_goal)),
+      rotor_command_(ring.create_writer(topics::rotor_command)),
+      goal_status_(ring.create_writer(topics::goal_status)),
+      event_(ring.create_writer(topics::event)) {}
+
+void ControlService::step(TimePoint now) noexcept {
+  if (first_step_) epoch_ = now;
+  take_state(now);
+  take_surroundings();
+  take_chain(now);
+  take_wrenches(now);
+  judge(now);
+  take_requests(now);
+  take_flight_goals(now);
+  take_morph_goals(now);
+  follow_mode(now);
+  if (flying(mode_)) {
+    write_rotors(now);
+  } else {
+    write_idle(now);
+  }
+  report_mode(now);
+  last_step_ = now;
+  first_step_ = false;
+}
+
+void ControlService::take_state(TimePoint now) noexcept {
+  while (const auto sample = module_state_.take()) {
+    const msg::ModuleState& s = sample->value;
+    if (s.module_id == config_.module_id) {
+      state_ = s;
+      state_at_ = from_ns(s.stamp_ns);
+    } else if (Peer* p = peer(s.module_id)) {
+      p->state = s;
+    }
+  }
+  // States come at the IMU's pace; between them the module goes on as it was going.
+  const double ahead_s = std::clamp(to_s(now - state_at_), 0.0, 0.02);
+  motion_.v_WM = robot::vector(state_.v_WM_m_s);
+  motion_.w_WM_M = robot::vector(state_.w_WM_M_rad_s);
+  motion_.p_WM = robot::vector(state_.p_WM_m) + motion_.v_WM * ahead_s;
+  motion_.R_WM = robot::rotation(state_.q_WM) * robot::exp_so3(motion_.w_WM_M * ahead_s);
+}
+
+void ControlService::take_surroundings() noexcept {
+  while (const auto sample = joint_state_.take()) {
+    const msg::JointState& joints = sample->value;
+    if (joints.module_id != config_.module_id) {
+      if (Peer* p = peer(joints.module_id)) p->joints = joints;
+      continue;
+    }
+    for (std::size_t k = 0; k < airframe_.joints.size() && k < joints.joints.size(); ++k) {
+      joint_rad_[k] = joints.joints[k].position_rad;
+    }
+  }
+  while (const auto sample = docking_state_.take()) {
+    if (sample->value.module_id == config_.module_id) docking_ = sample->value;
+  }
+  while (const auto sample = beacon_.take()) {
+    if (sample->value.module_id == config_.module_id) duplicate_id_ = sample->value.duplicate_id;
+  }
+}
+
+ControlService::Peer* ControlService::peer(std::uint32_t module_id) noexcept {
+  Peer* free = nullptr;
+  for (Peer& p : peers_) {
+    if (p.module_id == module_id) return &p;
+    if (p.module_id == 0 && free == nullptr) free = &p;
+  }
+  if (free != nullptr) free->module_id = module_id;
+  return free;  // nullptr: more peers in range than a chain can have; the rest is nobody we link with
+}
+
+bool ControlService::is_member(std::uint32_t module_id) const {
+  return std::find(view_.members.begin(), view_.members.end(), module_id) != view_.members.end();
+}
+
+void ControlService::take_chain(TimePoint now) noexcept {
+  while (const auto sample = chain_view_.take()) {
+    const msg::ChainView& view = sample->value;
+    if (view.module_id != config_.module_id || !view.active || view.active_epoch == view_.active_epoch) continue;
+    const double now_s = seconds(now);
+    law_.reset();
+    if (view.members.size() > 1) {
+      enter_chain(view, now);
+      pose_control_.set_gains(gains_assembled());
+    } else {
+      if (in_chain()) reference_.leave(now_s);
+      pose_control_.set_gains(gains_free());
+    }
+    view_ = view;
+  }
+}
+
+void ControlService::enter_chain(const msg::ChainView& view, TimePoint now) noexcept {
+  const std::size_t joints_each = airframe_.joints.size();
+  std::array<double, robot::coordinates_max> joint_rad{};
+  ChainPlace place{.members = view.members.size(), .own = 0, .base = 0};
+  robot::Pose X_WM_base = pose_of(state_);
+  for (std::size_t i = 0; i < view.members.size(); ++i) {
+    const std::uint32_t id = view.members[i];
+    const std::span own_part = std::span(joint_rad).subspan(i * joints_each, joints_each);
+    const Peer* other = id == config_.module_id ? nullptr : peer(id);
+    for (std::size_t k = 0; k < joints_each; ++k) {
+      if (id == config_.module_id) own_part[k] = joint_rad_[k];
+      if (other != nullptr && k < other->joints.joints.size()) own_part[k] = other->joints.joints[k].position_rad;
+    }
+    if (id == config_.module_id) place.own = i;
+    if (id != view.base_id) continue;
+    place.base = i;
+    if (other != nullptr && other->state.module_id == id) X_WM_base = pose_of(other->state);
+  }
+  reference_.join(place, std::span<const double>(joint_rad).first(place.members * joints_each), X_WM_base,
+                  seconds(now));
+}
+
+void ControlService::take_wrenches(TimePoint now) noexcept {
+  while (const auto sample = external_wrench_.take()) {
+    const msg::ExternalWrench& w = sample->value;
+    if (w.module_id != config_.module_id) continue;
+    external_W_ = {robot::vector(w.force_W_N), robot::vector(w.moment_W_Nm)};
+  }
+  while (const auto sample = contact_wrench_.take()) {
+    const msg::ContactWrench& w = sample->value;
+    if (w.module_id != config_.module_id || !in_chain() || w.epoch != view_.active_epoch) continue;
+    std::array<ChainMember, robot::members_max> members;
+    std::size_t own = 0;
+    for (std::size_t k = 0; k < w.members.size(); ++k) {
+      const msg::MemberWrench& m = w.members[k];
+      if (m.module_id == config_.module_id) own = k;
+      members[k] = {.d_W = {robot::vector(m.d_force_W_N), robot::vector(m.d_moment_W_Nm)},
+                    .contact_W = {robot::vector(m.link_force_W_N), robot::vector(m.link_moment_W_Nm)},
+                    .r_W = robot::vector(m.r_W_m),
+                    .link_W = robot::vector(m.link_W_m),
+                    .age_s = m.age_s};
+    }
+    const double dt_s = std::clamp(to_s(now - law_updated_), 0.0, 0.1);
+    law_updated_ = now;
+    law_.update(std::span<const ChainMember>(members).first(w.members.size()), own, {}, dt_s);
+  }
+  if (in_chain() && now - law_updated_ > law_silence) {
+    law_.fade(to_s(now - last_step_));
+  }
+}
+
+void ControlService::take_requests(TimePoint now) noexcept {
+  while (const auto sample = mode_request_.take()) {
+    const msg::ModeRequest& request = sample->value;
+    if (request.module_id != config_.module_id || request.correlation_id == answered_mode_) continue;
+    answered_mode_ = request.correlation_id;
+    FlightDecision decision{.mode = mode_};
+    switch (request.action) {
+      case msg::ModeAction::arm: decision = decide(mode_, FlightRequest::arm, conditions_); break;
+      case msg::ModeAction::disarm: decision = decide(mode_, FlightRequest::disarm, conditions_); break;
+      case msg::ModeAction::stop: decision = decide(mode_, FlightRequest::stop, conditions_); break;
+      case msg::ModeAction::zero: break;  // estimation's
+    }
+    mode_ = decision.mode;
+    answer(msg::GoalKind::mode, request.correlation_id,
+           decision.accepted ? msg::GoalPhase::succeeded : msg::GoalPhase::refused, decision.reason, now);
+  }
+}
+
+void ControlService::take_flight_goals(TimePoint now) noexcept {
+  while (const auto sample = flight_goal_.take()) {
+    const msg::FlightGoal& goal = sample->value;
+    const bool own = goal.module_id == config_.module_id;
+    if (goal.action == msg::FlightAction::track) {
+      if (own && goal.source == msg::GoalSource::docking && !in_chain() &&
+          decide(mode_, FlightRequest::go_to, conditions_).accepted) {
+        mode_ = FlightMode::hover;
+        reference_.track({robot::vector(goal.p_WM_m), robot::rotation(goal.q_WM)}, robot::vector(goal.v_WM_m_s),
+                         seconds(from_ns(goal.stamp_ns)));
+        goal_pending_ = false;
+      }
+      continue;
+    }
+    // A goal to a member of a chain moves the chain; only the member it names answers.
+    if (!own && !(in_chain() && is_member(goal.module_id))) continue;
+    if (goal.correlation_id == answered_flight_) continue;
+    answered_flight_ = goal.correlation_id;
+    const FlightDecision decision = decide_goal(goal);
+    mode_ = decision.mode;
+    if (own) {
+      answer(msg::GoalKind::flight, goal.correlation_id,
+             decision.accepted ? msg::GoalPhase::accepted : msg::GoalPhase::refused, decision.reason, now);
+    }
+    if (decision.accepted) begin(goal, now);
+  }
+}
+
+FlightDecision ControlService::decide_goal(const msg::FlightGoal& goal) const noexcept {
+  switch (goal.action) {
+    case msg::FlightAction::takeoff: return decide(mode_, FlightRequest::takeoff, conditions_);
+    case msg::FlightAction::goto_:
+      if (docking_.phase != msg::DockingPhase::idle && docking_.phase != msg::DockingPhase::docked) {
+        return {mode_, false, "docking is under way: wait until it is done"};
+      }
+      return decide(mode_, FlightRequest::go_to, conditions_);
+    case msg::FlightAction::land:
+      if (in_chain()) return {mode_, false, "a chain does not land: undock first"};
+      return decide(mode_, FlightRequest::land, conditions_);
+    case msg::FlightAction::track: break;
+  }
+  return {mode_, false, "not a goal for an operator"};
+}
+
+void ControlService::begin(const msg::FlightGoal& goal, TimePoint now) noexcept {
+  const double now_s = seconds(now);
+  goal_ = goal;
+  goal_pending_ = true;
+  const robot::Pose X_goal{robot::vector(goal.p_WM_m), robot::rotation(goal.q_WM)};
+  switch (goal.action) {
+    case msg::FlightAction::takeoff:
+      pose_control_.reset();
+      reference_.hold({motion_.p_WM, motion_.R_WM});
+      reference_.move({{motion_.p_WM.x(), motion_.p_WM.y(), goal.p_WM_m[2]}, upright(motion_.R_WM)},
+                      config_.takeoff_m_s, now_s);
+      break;
+    case msg::FlightAction::goto_:
+      if (in_chain()) {
+        reference_.move_base(X_goal, goal.speed_m_s, std::max(now_s, seconds(from_ns(goal.start_ns))), now_s);
+      } else {
+        reference_.move(X_goal, goal.speed_m_s, now_s);
+      }
+      break;
+    case msg::FlightAction::land:
+      touchdown_.reset();
+      reference_.descend(config_.landing_m_s, now_s);
+      break;
+    case msg::FlightAction::track: break;
+  }
+}
+
+void ControlService::take_morph_goals(TimePoint now) noexcept {
+  while (const auto sample = morph_goal_.take()) {
+    const msg::MorphGoal& goal = sample->value;
+    if (!in_chain() || goal.epoch != view_.active_epoch || goal.correlation_id == answered_morph_) continue;
+    answered_morph_ = goal.correlation_id;
+    // The joints service of the member it names answers; it comes to the same verdict.
+    const std::span<const double> joint_rad(goal.joint_position_rad.data(), goal.joint_position_rad.size());
+    const double now_s = seconds(now);
+    static_cast<void>(
+        reference_.morph(joint_rad, goal.rate_rad_s, std::max(now_s, seconds(from_ns(goal.start_ns))), now_s));
+  }
+}
+
+void ControlService::judge(TimePoint now) noexcept {
+  const double dt_s = first_step_ ? 0 : to_s(now - last_step_);
+  const FlightModeConfig limits;
+  conditions_.state_ready = state_.mode == msg::EstimatorMode::ready;
+  conditions_.state_usable = conditions_.state_ready || state_.mode == msg::EstimatorMode::dead_reckoning;
+  conditions_.state_age_s = to_s(now - state_at_);
+  const bool good = conditions_.state_usable && conditions_.state_age_s <= limits.state_age_s_max;
+  conditions_.state_good_s = good ? conditions_.state_good_s + dt_s : 0;
+  conditions_.trajectory_finished = goal_pending_ && reference_.arrived(seconds(now));
+  conditions_.landed = mode_ == FlightMode::land &&
+                       touchdown_.update(allocation_.achieved_B.force.norm(),
+                                         airframe_.mass_kg * robot::gravity_m_s2, motion_.v_WM.z(), dt_s);
+  conditions_.duplicate_id = duplicate_id_;
+}
+
+void ControlService::follow_mode(TimePoint now) noexcept {
+  const FlightMode before = mode_;
+  mode_ = advance(before, conditions_).mode;
+  if (before == FlightMode::failsafe && mode_ == FlightMode::hover) {
+    reference_.hold({motion_.p_WM, upright(motion_.R_WM)});
+    pose_control_.reset();
+  }
+  const bool done = goal_pending_ && (conditions_.trajectory_finished || conditions_.landed);
+  if (!done) return;
+  goal_pending_ = false;
+  if (goal_.module_id == config_.module_id) {
+    answer(msg::GoalKind::flight, goal_.correlation_id, msg::GoalPhase::succeeded, "", now);
+  }
+}
+
+void ControlService::write_rotors(TimePoint now) noexcept {
+  // With the state lost there is nothing to control by: silence hands over to the hardware host, which flies
+  // the module down on the IMU.
+  if (mode_ == FlightMode::failsafe) return;
+  const double dt_s = first_step_ ? config_.period_s : std::clamp(to_s(now - last_step_), 1e-4, 0.02);
+  const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
+  const robot::Wrench feed_forward_W =
+      in_chain() ? law_.feed_forward_W()
+                 : feedback_.update(config_.disturbance_feedback ? external_W_ : robot::Wrench{},
+                                    feedback_phase(docking_.phase != msg::DockingPhase::idle, docking_.commanded_gap_m,
+                                                   docking_.declared_by != msg::DeclaredBy::nothing),
+                                    dt_s);
+  const robot::Wrench demanded_B = pose_control_.update(
+      {.state = motion_,
+       .reference = reference_.at(seconds(now)),
+       .mass_kg = airframe_.mass_kg,
+       .I_M_kg_m2 = robot::composite_inertia(airframe_, joint_angles()),
+       .feed_forward_W = feed_forward_W,
+       .force_saturated = allocation_.force_scale < 1 || allocation_.thrust_limited,
+       .moment_saturated = allocation_.moment_scale < 1},
+      dt_s);
+  allocation_ = allocator_.update(demanded_B, c_B);
+
+  msg::RotorCommand out;
+  out.module_id = config_.module_id;
+  out.stamp_ns = to_ns(now);
+  out.state_stamp_ns = state_.stamp_ns;
+  out.armed = true;
+  out.safe_output = in_chain() ? msg::SafeOutput::hold_hover : msg::SafeOutput::descend;
+  for (const robot::RotorOutput& rotor : allocation_.outputs()) out.rotors.push_back({rotor.thrust_N, rotor.gimbal_rad});
+  rotor_command_.write(out);
+}
+
+void ControlService::write_idle(TimePoint now) noexcept {
+  msg::RotorCommand out;
+  out.module_id = config_.module_id;
+  out.stamp_ns = to_ns(now);
+  out.state_stamp_ns = state_.stamp_ns;
+  out.armed = mode_ == FlightMode::armed;
+  out.safe_output = msg::SafeOutput::motors_off;
+  for (const robot::RotorGeometry& rotor : airframe_.rotors) {
+    out.rotors.push_back({out.armed ? rotor.thrust_N_min : 0, {}});
+  }
+  rotor_command_.write(out);
+  pose_control_.reset();
+}
+
+void ControlService::answer(msg::GoalKind kind, std::uint64_t correlation_id, msg::GoalPhase phase,
+                            std::string_view reason, TimePoint now) noexcept {
+  msg::GoalStatus out;
+  out.module_id = config_.module_id;
+  out.goal = kind;
+  out.stamp_ns = to_ns(now);
+  out.correlation_id = correlation_id;
+  out.phase = phase;
+  out.reason = reason;
+  goal_status_.write(out);
+}
+
+void ControlService::report_mode(TimePoint now) noexcept {
+  if (mode_ == reported_mode_) return;
+  const auto text = [](FlightMode mode) {
+    return bus::EnumTraits<msg::FlightMode>::names[static_cast<std::size_t>(mode)];
+  };
+  msg::Event out{.module_id = config_.module_id, .stamp_ns = to_ns(now), .service = "control", .machine = "flight"};
+  out.from = text(reported_mode_);
+  out.to = text(mode_);
+  event_.write(out);
+  reported_mode_ = mode_;
+}
+
+}  // namespace eciton::control

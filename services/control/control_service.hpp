@@ -1,0 +1,135 @@
+// From the module's state and its goals to rotor commands: flight modes, references, pose control with the
+// contact-wrench feed-forward, allocation.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/base/config.hpp"
+#include "core/bus/participant.hpp"
+#include "core/robot/allocation.hpp"
+#include "core/robot/kinematics.hpp"
+#include "core/runtime/service.hpp"
+#include "idl/topics.hpp"
+#include "services/control/contact_wrench_law.hpp"
+#include "services/control/disturbance_feedback.hpp"
+#include "services/control/flight_mode.hpp"
+#include "services/control/flight_reference.hpp"
+#include "services/control/pose_control.hpp"
+
+namespace eciton::control {
+
+struct ControlConfig {
+  std::uint32_t module_id = 0;
+  double period_s = 0.002;             // its own pace, where states come slower
+  std::string law = "local";
+  bool disturbance_feedback = true;    // the observer's wrench fed back in free flight
+  double takeoff_m_s = 0.5;
+  double landing_m_s = 0.3;
+  double speed_m_s = 0.5;
+  double observer_gain_1_s = 10;       // as estimation's config says: the law's rate follows from it
+
+  template <class V>
+  void visit_fields(V& v) {
+    v("period_s", period_s, in_range(0.001, 0.02));
+    v("law", law, one_of({"none", "paper", "local"}));
+    v("disturbance_feedback", disturbance_feedback);
+    v("takeoff_m_s", takeoff_m_s, in_range(0.05, 2));
+    v("landing_m_s", landing_m_s, in_range(0.05, 1));
+    v("speed_m_s", speed_m_s, in_range(0.05, 2));
+  }
+};
+
+class ControlService final : public runtime::Service {
+ public:
+  ControlService(bus::Participant& ring, const ControlConfig& config, const robot::Airframe& airframe);
+
+  std::string_view name() const override { return "control"; }
+  runtime::Schedule schedule() override {
+    return runtime::on(module_state_, from_s(config_.period_s), runtime::Phase::control);
+  }
+  void step(TimePoint now) noexcept override;
+  void describe(msg::Heartbeat& heartbeat) const noexcept override { heartbeat.flight_mode = to_message(mode_); }
+
+ private:
+  static msg::FlightMode to_message(FlightMode mode) { return static_cast<msg::FlightMode>(mode); }
+  double seconds(TimePoint t) const { return to_s(t - epoch_); }
+  std::span<const double> joint_angles() const { return std::span(joint_rad_).first(airframe_.joints.size()); }
+
+  void take_state(TimePoint now) noexcept;
+  void take_surroundings() noexcept;
+  void take_chain(TimePoint now) noexcept;
+  void take_requests(TimePoint now) noexcept;
+  void take_flight_goals(TimePoint now) noexcept;
+  void take_morph_goals(TimePoint now) noexcept;
+  void take_wrenches(TimePoint now) noexcept;
+
+  void enter_chain(const msg::ChainView& view, TimePoint now) noexcept;
+  void begin(const msg::FlightGoal& goal, TimePoint now) noexcept;
+  FlightDecision decide_goal(const msg::FlightGoal& goal) const noexcept;
+  void judge(TimePoint now) noexcept;
+  void follow_mode(TimePoint now) noexcept;
+  void write_rotors(TimePoint now) noexcept;
+  void write_idle(TimePoint now) noexcept;
+
+  bool in_chain() const { return reference_.in_chain(); }
+  bool is_member(std::uint32_t module_id) const;
+  void answer(msg::GoalKind kind, std::uint64_t correlation_id, msg::GoalPhase phase, std::string_view reason,
+              TimePoint now) noexcept;
+  void report_mode(TimePoint now) noexcept;
+
+  ControlConfig config_;
+  robot::Airframe airframe_;
+  FlightReference reference_;
+  PoseControl pose_control_;
+  ContactWrenchLaw law_;
+  DisturbanceFeedback feedback_;
+  robot::Allocator allocator_;
+  TouchdownDetector touchdown_;
+  FlightMode mode_ = FlightMode::disarmed;
+  FlightConditions conditions_;
+  TimePoint law_updated_{};
+
+  TimePoint epoch_{};           // of `seconds`: the first step
+  TimePoint last_step_{};
+  bool first_step_ = true;
+  msg::ModuleState state_;      // the newest
+  TimePoint state_at_{};
+  ModuleMotion motion_;         // extrapolated to now
+  std::array<double, robot::joints_max> joint_rad_{};
+  robot::Wrench external_W_;
+  bool duplicate_id_ = false;
+  msg::DockingState docking_;
+  msg::ChainView view_;         // the active one
+  robot::Allocation allocation_;
+
+  // Of the other members: where they are and how their joints stand, for joining.
+  struct Peer {
+    std::uint32_t module_id = 0;
+    msg::ModuleState state;
+    msg::JointState joints;
+  };
+  std::array<Peer, robot::members_max> peers_{};
+  Peer* peer(std::uint32_t module_id) noexcept;
+
+  msg::FlightGoal goal_;        // the one being flown
+  bool goal_pending_ = false;
+  std::uint64_t answered_mode_ = 0, answered_flight_ = 0, answered_morph_ = 0;
+  FlightMode reported_mode_ = FlightMode::disarmed;
+
+  bus::Reader<msg::ModuleState> module_state_;
+  bus::Reader<msg::JointState> joint_state_;
+  bus::Reader<msg::ExternalWrench> external_wrench_;
+  bus::Reader<msg::ContactWrench> contact_wrench_;
+  bus::Reader<msg::ChainView> chain_view_;
+  bus::Reader<msg::DockingState> docking_state_;
+  bus::Reader<msg::Beacon> beacon_;
+  bus::Reader<msg::ModeRequest> mode_request_;
+  bus::Reader<msg::FlightGoal> flight_goal_;
+  bus::Reader<msg::MorphGoal> morph_goal_;
+  bus::Writer<msg::RotorCommand> rotor_command_;
+  bus::Writer<msg::GoalStatus> goal_status_;
+  bus::Writer<msg::Event> event_;
+};
+
+}  // namespace eciton::control

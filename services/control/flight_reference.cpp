@@ -1,0 +1,116 @@
+// References of one module, apart and as a member of a chain.
+#include "services/control/flight_reference.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace eciton::control {
+
+using robot::Pose;
+using robot::PoseMotion;
+using robot::PoseReference;
+
+FlightReference::FlightReference(const robot::Airframe& airframe, const FlightReferenceConfig& config)
+    : airframe_(airframe), config_(config), joints_(airframe) {}
+
+void FlightReference::hold(const Pose& X_WM) {
+  kind_ = Kind::motion;
+  motion_ = PoseMotion(X_WM);
+}
+
+void FlightReference::move(const Pose& X_WM, double speed_m_s, double now_s) {
+  robot::TrajectoryLimits limits = config_.limits;
+  limits.speed_m_s = speed_m_s > 0 ? speed_m_s : config_.speed_m_s;
+  const PoseReference from = at(now_s);
+  kind_ = Kind::motion;
+  motion_ = PoseMotion(from, X_WM, now_s, robot::SpeedProfile::trapezoid, limits);
+}
+
+void FlightReference::track(const Pose& X_WM, const robot::Vector3& v_WM, double stamp_s) {
+  kind_ = Kind::track;
+  tracked_ = {};
+  tracked_.p_WM = X_WM.p;
+  tracked_.R_WM = X_WM.R;
+  tracked_.v_WM = v_WM;
+  tracked_s_ = stamp_s;
+}
+
+void FlightReference::descend(double speed_m_s, double now_s) {
+  // A tracked reference that is renewed by itself: it goes down until somebody sees the ground.
+  const PoseReference from = at(now_s);
+  kind_ = Kind::descend;
+  tracked_ = {};
+  tracked_.p_WM = from.p_WM;
+  tracked_.R_WM = from.R_WM;
+  tracked_.v_WM = {0, 0, -speed_m_s};
+  tracked_s_ = now_s;
+}
+
+void FlightReference::join(const ChainPlace& place, std::span<const double> joint_rad, const Pose& X_WM_base,
+                           double now_s) {
+  const PoseReference own = at(now_s);
+  in_chain_ = true;
+  kind_ = Kind::motion;
+  place_ = place;
+  joints_.reset(joint_rad, place.base);
+  motion_ = PoseMotion(X_WM_base);
+  offset_p_.setZero();
+  offset_R_.setIdentity();
+  // Where the shared base puts this module, and where it is by its own lights: biases of its sensors, of the
+  // others' and of the joints. Flown on with, so that joining moves nothing.
+  const PoseReference shared = own_part(now_s);
+  offset_p_ = own.p_WM - shared.p_WM;
+  offset_R_ = shared.R_WM.transpose() * own.R_WM;
+}
+
+void FlightReference::move_base(const Pose& X_WM_goal, double speed_m_s, double start_s, double now_s) {
+  robot::TrajectoryLimits limits = config_.limits;
+  limits.speed_m_s = speed_m_s > 0 ? speed_m_s : config_.speed_m_s;
+  motion_ = PoseMotion(motion_.at(now_s), X_WM_goal, start_s, robot::SpeedProfile::trapezoid, limits);
+}
+
+void FlightReference::leave(double now_s) {
+  const PoseReference own = at(now_s);
+  in_chain_ = false;
+  hold({own.p_WM, own.R_WM});
+}
+
+PoseReference FlightReference::own_part(double now_s) const {
+  std::array<robot::ScalarMotion, robot::coordinates_max> joints;
+  std::array<PoseReference, robot::members_max> members;
+  const std::span part = std::span(joints).first(place_.members * airframe_.joints.size());
+  joints_.at(now_s, part);
+  robot::chain_references(airframe_, place_.base, motion_.at(now_s), part, std::span(members).first(place_.members));
+  PoseReference own = members[place_.own];
+  own.p_WM += offset_p_;
+  own.R_WM = own.R_WM * offset_R_;
+  own.w_WM_M = offset_R_.transpose() * own.w_WM_M;
+  own.alpha_WM_M = offset_R_.transpose() * own.alpha_WM_M;
+  return own;
+}
+
+PoseReference FlightReference::at(double now_s) const {
+  if (in_chain_) return own_part(now_s);
+  switch (kind_) {
+    case Kind::motion: return motion_.at(now_s);
+    case Kind::descend: {
+      PoseReference r = tracked_;
+      r.p_WM += r.v_WM * (now_s - tracked_s_);
+      return r;
+    }
+    case Kind::track: {
+      PoseReference r = tracked_;
+      const double ahead_s = std::clamp(now_s - tracked_s_, 0.0, config_.track_hold_s);
+      r.p_WM += r.v_WM * ahead_s;
+      if (ahead_s >= config_.track_hold_s) r.v_WM.setZero();
+      return r;
+    }
+  }
+  return {};
+}
+
+bool FlightReference::arrived(double now_s) const {
+  return kind_ == Kind::motion && motion_.finished(now_s) && (!in_chain_ || joints_.finished(now_s));
+}
+
+}  // namespace eciton::control

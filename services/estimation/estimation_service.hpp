@@ -1,0 +1,105 @@
+// From IMU and pose to the module's state, from state and rotors to the external wrench, and from the
+// members' wrenches to the contact wrenches of the chain.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/base/config.hpp"
+#include "core/bus/participant.hpp"
+#include "core/robot/actuator_lag.hpp"
+#include "core/robot/kinematics.hpp"
+#include "core/runtime/service.hpp"
+#include "idl/topics.hpp"
+#include "services/estimation/contact_wrench.hpp"
+#include "services/estimation/error_state_filter.hpp"
+#include "services/estimation/momentum_observer.hpp"
+#include "services/estimation/zeroing.hpp"
+
+namespace eciton::estimation {
+
+struct EstimationConfig {
+  std::uint32_t module_id = 0;
+  double wrench_rate_Hz = 100;
+  double observer_gain_1_s = 10;
+  bool zeroing = true;             // false: a controller on wrenches that were never zeroed (an experiment's control)
+
+  template <class V>
+  void visit_fields(V& v) {
+    v("wrench_rate_Hz", wrench_rate_Hz, in_range(10, 500));
+    v("observer_gain_1_s", observer_gain_1_s, in_range(0.5, 50));
+    v("zeroing", zeroing);
+  }
+};
+
+class EstimationService final : public runtime::Service {
+ public:
+  EstimationService(bus::Participant& ring, const EstimationConfig& config, const robot::Airframe& airframe);
+
+  std::string_view name() const override { return "estimation"; }
+  runtime::Schedule schedule() override {
+    using namespace std::chrono_literals;
+    return runtime::on(imu_, 5ms, runtime::Phase::estimate);
+  }
+  void step(TimePoint now) noexcept override;
+
+ private:
+  void take_actuators() noexcept;
+  void take_chain(TimePoint now) noexcept;
+  void take_sensors() noexcept;
+  void observe(TimePoint now) noexcept;
+  void zero(double dt_s) noexcept;
+  void publish_state(TimePoint now) noexcept;
+  void publish_external_wrench(TimePoint now) noexcept;
+  void publish_contact_wrench(TimePoint now) noexcept;
+  bool free_flight() const;
+  std::span<const double> joint_angles() const { return std::span(joint_rad_).first(airframe_.joints.size()); }
+  void report_mode(TimePoint now) noexcept;
+
+  EstimationConfig config_;
+  robot::Airframe airframe_;
+  Duration wrench_period_;
+  ErrorStateFilter filter_;
+  MomentumObserver observer_;
+  Zeroing zeroing_;
+  robot::ActuatorLag rotors_;
+  std::array<robot::RotorOutput, robot::rotors_max> rotor_command_{};
+  bool armed_ = false;
+  std::array<double, robot::joints_max> joint_rad_{};
+  struct CentreOfMass {
+    robot::Vector3 p_WM = robot::Vector3::Zero();
+    robot::Vector3 v_WM = robot::Vector3::Zero();
+  };
+  Estimate estimate_;
+  CentreOfMass state_;
+  robot::Wrench external_W_;        // about the composite centre of mass, bias removed
+  msg::ExternalWrench own_;
+
+  msg::ChainView view_;             // the active one
+  bool touching_ = false;           // or about to: the zero stays as it is
+  std::array<msg::ExternalWrench, 16> heard_{};  // by place in the chain
+  std::array<TimePoint, 16> heard_at_{};
+
+  bool zero_asked_ = false;
+  bool zeroing_interrupted_ = false;
+
+  TimePoint last_step_{};
+  TimePoint wrench_due_{};
+  bool first_step_ = true;
+  msg::EstimatorMode reported_mode_ = msg::EstimatorMode::initialising;
+
+  bus::Reader<msg::Imu> imu_;
+  bus::Reader<msg::PoseMeasurement> pose_;
+  bus::Reader<msg::RotorCommand> rotor_commands_;
+  bus::Reader<msg::JointState> joint_state_;
+  bus::Reader<msg::ChainView> chain_view_;
+  bus::Reader<msg::DockingState> docking_state_;
+  bus::Reader<msg::ExternalWrench> external_wrenches_;
+  bus::Reader<msg::ModeRequest> mode_request_;
+  bus::Writer<msg::ModuleState> module_state_;
+  bus::Writer<msg::ExternalWrench> external_wrench_;
+  bus::Writer<msg::ContactWrench> contact_wrench_;
+  bus::Writer<msg::Event> event_;
+};
+
+}  // namespace eciton::estimation

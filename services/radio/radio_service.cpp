@@ -1,0 +1,213 @@
+// take from one ring; forward to the other; beacon.
+#include "services/radio/radio_service.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace eciton::radio {
+namespace {
+
+/// The module id is the first key of every swarm topic; the key hash is big-endian.
+std::uint32_t module_of(const bus::TopicInfo& topic, std::span<const std::uint8_t> cdr) {
+  std::uint8_t hash[16] = {};
+  topic.type.key_hash(cdr.data(), static_cast<std::uint32_t>(cdr.size()), 0, hash);
+  return static_cast<std::uint32_t>(hash[0]) << 24 | static_cast<std::uint32_t>(hash[1]) << 16 |
+         static_cast<std::uint32_t>(hash[2]) << 8 | hash[3];
+}
+
+constexpr std::uint32_t rtps_overhead_bytes = 210;  // headers of one sample on the air, measured with a dissector
+
+}  // namespace
+
+/// One topic's way across. Outward: this module's own samples, within the rate. Inward: the peers' samples,
+/// and goals whoever they are for, since a goal to a member of a chain is for all of it.
+struct RadioService::Route {
+  bus::RawReader from_ring;
+  bus::RawWriter to_swarm;
+  bus::RawReader from_swarm;
+  bus::RawWriter to_ring;
+  Duration interval;
+  bool goal;
+  bool near_only;
+  TimePoint due{};
+  RadioService* radio = nullptr;
+};
+
+RadioService::RadioService(bus::Participant& ring, bus::Participant& swarm, const RadioConfig& config)
+    : config_(config),
+      ring_(ring),
+      swarm_(swarm),
+      airtime_({.budget_bit_s = config.airtime_budget_bit_s, .overhead_bytes = rtps_overhead_bytes}),
+      docking_state_(ring.create_reader(topics::docking_state)),
+      chain_view_(ring.create_reader(topics::chain_view)),
+      module_state_(ring.create_reader(topics::module_state)),
+      external_wrench_(ring.create_reader(topics::external_wrench)),
+      heartbeat_(ring.create_reader(topics::heartbeat)),
+      beacons_heard_(swarm.create_reader(topics::beacon)),
+      beacon_to_swarm_(swarm.create_writer(topics::beacon)),
+      beacon_to_ring_(ring.create_writer(topics::beacon)),
+      fault_(ring.create_writer(topics::fault)) {
+  routes_.reserve(std::tuple_size_v<decltype(topics::all)>);
+  topics::for_each([this](const auto& topic) {
+    using T = typename std::decay_t<decltype(topic)>::Type;
+    // The beacon is the radio's own; everything else that is for the swarm crosses untouched.
+    if (topic.scope != bus::Scope::swarm || std::is_same_v<T, msg::Beacon>) return;
+    add_route(bus::info(topic));
+  });
+  beacon_.module_id = config.module_id;
+  beacon_.incarnation = config.incarnation;
+  beacon_.name = config.name;
+  beacon_.airframe = config.airframe;
+}
+
+RadioService::~RadioService() = default;
+
+void RadioService::add_route(const bus::TopicInfo& topic) {
+  const auto interval = [](double rate_Hz) { return from_s(1 / rate_Hz); };
+  const bool wrench = topic.name == topics::external_wrench.name;
+  const bool joints = topic.name == topics::joint_state.name;
+  Duration pace{};
+  if (wrench) pace = interval(config_.wrench_rate_Hz);
+  if (joints) pace = interval(config_.joint_rate_Hz);
+  if (topic.name == topics::module_state.name) pace = interval(config_.state_rate_Hz);
+  const bool goal = topic.qos == bus::QosClass::command;
+  routes_.push_back({.from_ring = ring_.create_raw_reader(topic),
+                     .to_swarm = swarm_.create_raw_writer(topic),
+                     .from_swarm = swarm_.create_raw_reader(topic),
+                     .to_ring = ring_.create_raw_writer(topic),
+                     .interval = pace,
+                     .goal = goal,
+                     .near_only = wrench || joints,
+                     .radio = this});
+}
+
+void RadioService::step(TimePoint now) noexcept {
+  now_ = now;
+  watch_own_module();
+  hear_beacons(now);
+  for (Route& route : routes_) {
+    forward_out(route);
+    forward_in(route);
+  }
+  if (now >= beacon_due_) send_beacon(now);
+}
+
+void RadioService::forward_out(Route& route) noexcept {
+  route.from_ring.take(
+      [](void* context, std::span<const std::uint8_t> cdr) {
+        auto& r = *static_cast<Route*>(context);
+        RadioService& radio = *r.radio;
+        if (r.goal || module_of(r.from_ring.topic(), cdr) != radio.config_.module_id) return;
+        if (r.near_only && !radio.near_) return;
+        if (r.interval > Duration::zero()) {
+          // A tenth of slack, so that a period that just misses its due time does not halve the rate.
+          if (radio.now_ < r.due - r.interval / 10) return;
+          r.due = std::max(r.due, radio.now_ - r.interval) + r.interval;
+        }
+        ++(r.to_swarm.write(cdr) ? radio.sent_ : radio.dropped_);
+        radio.airtime_.add(radio.now_, cdr.size());
+      },
+      &route);
+}
+
+void RadioService::forward_in(Route& route) noexcept {
+  route.from_swarm.take(
+      [](void* context, std::span<const std::uint8_t> cdr) {
+        auto& r = *static_cast<Route*>(context);
+        if (!r.goal && module_of(r.from_swarm.topic(), cdr) == r.radio->config_.module_id) return;
+        r.to_ring.write(cdr);
+      },
+      &route);
+}
+
+void RadioService::watch_own_module() noexcept {
+  while (const auto state = docking_state_.take()) {
+    const bool own = state->value.module_id == config_.module_id;
+    const bool names_us = state->value.peer_id == config_.module_id && state->value.role == msg::DockingRole::follower;
+    if (own) docking_ = state->value.phase != msg::DockingPhase::idle;
+    // A follower that approaches us hears our wrench before our own docking service has noticed it.
+    if (names_us) courted_ = state->value.phase != msg::DockingPhase::idle;
+  }
+  while (const auto view = chain_view_.take()) {
+    if (view->value.module_id == config_.module_id) chained_ = view->value.members.size() > 1 || view->value.epoch != 0;
+  }
+  const msg::Beacon before = beacon_;
+  while (const auto state = module_state_.take()) {
+    if (state->value.module_id == config_.module_id) beacon_.estimator_mode = state->value.mode;
+  }
+  while (const auto wrench = external_wrench_.take()) {
+    if (wrench->value.module_id == config_.module_id) beacon_.wrench_zeroed = wrench->value.zeroed;
+  }
+  while (const auto beat = heartbeat_.take()) {
+    const msg::Heartbeat& b = beat->value;
+    if (b.module_id == config_.module_id && b.service == "control") beacon_.flight_mode = b.flight_mode;
+  }
+  const bool was_near = near_;
+  near_ = docking_ || courted_ || chained_;
+  // What peers decide by is told at once, not at the next beacon.
+  const bool changed = beacon_.wrench_zeroed != before.wrench_zeroed || beacon_.flight_mode != before.flight_mode ||
+                       beacon_.estimator_mode != before.estimator_mode || near_ != was_near;
+  if (changed) beacon_due_ = std::min(beacon_due_, now_);
+}
+
+void RadioService::hear_beacons(TimePoint now) noexcept {
+  while (const auto heard = beacons_heard_.take()) {
+    const msg::Beacon& beacon = heard->value;
+    if (beacon.module_id == config_.module_id) {
+      meet_own_id(beacon, now);
+      continue;
+    }
+    PeerClock& clock = clocks_[beacon.module_id % clocks_.size()];
+    clock.hear(now, from_ns(beacon.stamp_ns));
+    for (const msg::PeerEcho& echo : beacon.peers) {
+      if (echo.module_id != config_.module_id) continue;
+      clock.echo(now, from_ns(beacon.stamp_ns), from_ns(echo.stamp_ns), from_ns(echo.received_ns));
+    }
+    if (const auto offset = clock.offset(now)) ring_.set_clock_offset(beacon.module_id, offset->offset);
+    note_echo(beacon, now);
+    beacon_to_ring_.write(beacon);
+  }
+}
+
+void RadioService::meet_own_id(const msg::Beacon& beacon, TimePoint now) noexcept {
+  own_id_.hear(now, beacon.incarnation, from_ns(beacon.stamp_ns));
+  if (duplicate_id_ || !own_id_.met(now)) return;
+  duplicate_id_ = true;
+  beacon_due_ = now;
+  msg::Fault out{.module_id = config_.module_id, .stamp_ns = to_ns(now), .severity = msg::Severity::error};
+  out.service = "radio";
+  out.device = "swarm ring";
+  out.text = "another module with our id is heard: give one of them another id; we refuse to arm";
+  fault_.write(out);
+}
+
+void RadioService::note_echo(const msg::Beacon& beacon, TimePoint now) noexcept {
+  msg::PeerEcho* entry = nullptr;
+  for (msg::PeerEcho& echo : beacon_.peers) {
+    if (echo.module_id == beacon.module_id) entry = &echo;
+  }
+  if (entry == nullptr) {
+    if (!beacon_.peers.push_back({})) return;  // the beacon names sixteen peers at the most
+    entry = &beacon_.peers.back();
+  }
+  entry->module_id = beacon.module_id;
+  entry->stamp_ns = beacon.stamp_ns;
+  entry->received_ns = to_ns(now);
+  const auto offset = clocks_[beacon.module_id % clocks_.size()].offset(now);
+  entry->offset_ns = offset ? offset->offset.count() : 0;
+  entry->offset_bound_ns = offset ? offset->bound.count() : -1;
+}
+
+void RadioService::send_beacon(TimePoint now) noexcept {
+  beacon_.stamp_ns = to_ns(now);
+  beacon_.duplicate_id = duplicate_id_;
+  beacon_.airtime = airtime_.share(now);
+  beacon_.sent = sent_;
+  beacon_.dropped = dropped_;
+  own_id_.hear(now, config_.incarnation, now);
+  beacon_to_swarm_.write(beacon_);
+  beacon_to_ring_.write(beacon_);
+  beacon_due_ = now + from_s(near_ ? config_.beacon_near_period_s : config_.beacon_period_s);
+}
+
+}  // namespace eciton::radio

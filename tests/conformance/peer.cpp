@@ -1,0 +1,31 @@
+// The peer that dies: writes its claim once and its state at 100 Hz until it is killed.
+// peer VENDOR DOMAIN INCARNATION
+#include <cstdio>
+#include <cstdlib>
+
+#include "tests/conformance/ring.hpp"
+
+int main(int argc, char** argv) {
+  using namespace eciton;
+  if (argc != 4) {
+    std::fprintf(stderr, "usage: %s VENDOR DOMAIN INCARNATION\n", argv[0]);
+    return 2;
+  }
+  auto config = bus::conformance::config_of(argv[1], static_cast<std::uint32_t>(std::atoi(argv[2])));
+  try {
+    bus::Participant participant(config);
+    auto claims = participant.create_writer(topics::link_claim);
+    auto states = participant.create_writer(topics::module_state);
+    auto claim = bus::conformance::claim(7, 0, 1);
+    claim.incarnation = std::strtoull(argv[3], nullptr, 10);
+    claims.write(claim);
+    for (int k = 0; k < 6000; ++k) {  // a minute at most, should nobody kill it
+      states.write(bus::conformance::state_at(7, k));
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  } catch (const BadInput& bad) {
+    std::fprintf(stderr, "%s\n", bad.error.message.c_str());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,196 @@
+// Allocation against the rotor convention worked out by hand, and against itself going forward.
+#include "core/robot/allocation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace eciton::robot {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Vector3 random_vector(std::mt19937& rng, double size) {
+  std::uniform_real_distribution<double> u(-size, size);
+  const double x = u(rng), y = u(rng), z = u(rng);
+  return {x, y, z};
+}
+
+TEST(RotorConventionTest, OuterGimbalTiltsAboutXInnerAboutY) {
+  EXPECT_TRUE(thrust_vector_B({10, {0, 0}}).isApprox(Vector3(0, 0, 10)));
+  EXPECT_TRUE(thrust_vector_B({10, {pi / 2, 0}}).isApprox(Vector3(0, -10, 0)));
+  EXPECT_TRUE(thrust_vector_B({10, {0, pi / 2}}).isApprox(Vector3(10, 0, 0)));
+  const double phi = 0.4, theta = -0.7;
+  const Matrix3 R = (Eigen::AngleAxisd(phi, Vector3::UnitX()) * Eigen::AngleAxisd(theta, Vector3::UnitY())).matrix();
+  EXPECT_TRUE(thrust_vector_B({10, {phi, theta}}).isApprox(R * Vector3(0, 0, 10), 1e-14));
+}
+
+TEST(RotorConventionTest, BothBranchesMakeTheSameThrustAndTheNearerIsTaken) {
+  // theta beyond a quarter turn, reached continuously, stays on its branch ...
+  const RotorOutput tilted{8, {0.3, 1.7}};
+  const RotorOutput back = rotor_output(thrust_vector_B(tilted), {0.29, 1.65}, 2.0);
+  EXPECT_NEAR(back.gimbal_rad[0], 0.3, 1e-12);
+  EXPECT_NEAR(back.gimbal_rad[1], 1.7, 1e-12);
+  // ... though from rest the principal one would be the outer gimbal turned over.
+  const RotorOutput other = rotor_output(thrust_vector_B(tilted), {0.3 - pi, pi - 1.7}, 4.0);
+  EXPECT_NEAR(other.gimbal_rad[0], 0.3 - pi, 1e-12);
+  EXPECT_NEAR(other.gimbal_rad[1], pi - 1.7, 1e-12);
+  EXPECT_TRUE(thrust_vector_B(other).isApprox(thrust_vector_B(tilted), 1e-12));
+}
+
+TEST(RotorConventionTest, AThrustTurningPastAQuarterTurnIsFollowedWithoutAFlip) {
+  std::array<double, 2> present{0.02, 1.2};
+  double principal_jump = 0, principal = 0.02;
+  for (double theta = 1.2; theta < 1.9; theta += 0.005) {
+    const Vector3 thrust = thrust_vector_B({8, {0.02, theta}});
+    const RotorOutput o = rotor_output(thrust, present, 2.0);
+    EXPECT_NEAR(o.gimbal_rad[0], 0.02, 1e-9);
+    EXPECT_NEAR(o.gimbal_rad[1], theta, 1e-9);
+    present = o.gimbal_rad;
+    const double phi = std::atan2(-thrust.y(), thrust.z());
+    principal_jump = std::max(principal_jump, std::abs(phi - principal));
+    principal = phi;
+  }
+  EXPECT_GT(principal_jump, 3);  // what it would do without the rule
+}
+
+TEST(RotorConventionTest, ABranchBeyondTheLimitIsNotTakenEvenIfNearer) {
+  const Vector3 thrust = thrust_vector_B({8, {0.5, 1.3}});
+  const RotorOutput o = rotor_output(thrust, {0.5 - pi, pi - 1.3}, 2.0);  // present one: phi = -2.64
+  EXPECT_NEAR(o.gimbal_rad[0], 0.5, 1e-12);
+  EXPECT_NEAR(o.gimbal_rad[1], 1.3, 1e-12);
+}
+
+TEST(RotorConventionTest, PhiStaysWhereItIsUndefined) {
+  const RotorOutput o = rotor_output({5, 0, 0}, {0.7, 1.5}, 2.0);
+  EXPECT_DOUBLE_EQ(o.gimbal_rad[0], 0.7);
+  EXPECT_DOUBLE_EQ(o.gimbal_rad[1], pi / 2);
+}
+
+TEST(AllocationTest, OneRotorsWrenchIsWhatAPencilSays) {
+  Airframe a;
+  a.mass_kg = 1;
+  a.rotors.push_back({Vector3(0.5, 0, 0), 0.1, 0, 10, 2, 3});
+  const Wrench w = rotor_wrench_B(a, std::array{RotorOutput{4, {0, 0}}}, Vector3(0.1, 0, 0));
+  EXPECT_TRUE(w.force.isApprox(Vector3(0, 0, 4)));
+  EXPECT_TRUE(w.moment.isApprox(Vector3(0, -0.4 * 4, 0.1 * 4)));  // r x f, and drag along f
+}
+
+TEST(AllocationTest, ReproducesTheRequestedWrenchWithTheMassCentreMoved) {
+  const Airframe a = legion(true);
+  Allocator allocator(a);
+  std::mt19937 rng(1);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 c = random_vector(rng, 0.01);
+    const Wrench w{Vector3(0, 0, a.mass_kg * gravity_m_s2) + random_vector(rng, 8), random_vector(rng, 0.6)};
+    const Allocation out = allocator.update(w, c);
+    EXPECT_FALSE(out.saturated());
+    EXPECT_LT((out.achieved_B.force - w.force).norm(), 1e-10);
+    EXPECT_LT((out.achieved_B.moment - w.moment).norm(), 1e-10);
+  }
+}
+
+TEST(AllocationTest, IgnoringTheMassCentreOffsetMakesAFalseMoment) {
+  const Airframe a = legion();
+  Allocator allocator(a);
+  const Vector3 c(0.01, 0, 0);
+  const Wrench hover{Vector3(0, 0, a.mass_kg * gravity_m_s2), Vector3::Zero()};
+  const Allocation naive = allocator.update(hover, Vector3::Zero());
+  EXPECT_NEAR(rotor_wrench_B(a, naive.outputs(), c).moment.y(), 0.01 * hover.force.z(), 1e-9);
+}
+
+TEST(AllocationTest, HoverSharesTheWeightOfTheRotors) {
+  const Airframe a = legion();
+  Allocator allocator(a);
+  const Allocation out = allocator.update({Vector3(0, 0, a.mass_kg * gravity_m_s2), Vector3::Zero()}, Vector3::Zero());
+  double sum = 0;
+  for (const RotorOutput& o : out.outputs()) {
+    sum += o.thrust_N * std::cos(o.gimbal_rad[0]) * std::cos(o.gimbal_rad[1]);
+    EXPECT_NEAR(o.thrust_N, 12.8, 0.4);  // hardware.md: 12.8 N a rotor
+  }
+  EXPECT_NEAR(sum, a.mass_kg * gravity_m_s2, 1e-9);
+}
+
+TEST(AllocationTest, MomentIsKeptAndForceGivesWayWhenThrustRunsOut) {
+  const Airframe a = legion();
+  Allocator allocator(a);
+  const Wrench w{Vector3(0, 0, 60), Vector3(1.5, 0.5, 1)};
+  const Allocation out = allocator.update(w, Vector3::Zero());
+  EXPECT_TRUE(out.saturated());
+  EXPECT_LT(out.force_scale, 1);
+  EXPECT_GE(out.force_scale, 0.6);
+  EXPECT_DOUBLE_EQ(out.moment_scale, 1);
+  EXPECT_LT((out.achieved_B.moment - w.moment).norm(), 1e-9);
+  EXPECT_LT((out.achieved_B.force - w.force * out.force_scale).norm(), 1e-9);
+  double greatest = 0;
+  for (const RotorOutput& o : out.outputs()) greatest = std::max(greatest, o.thrust_N);
+  EXPECT_NEAR(greatest, 21, 1e-6);  // no more than needed was given away
+}
+
+TEST(AllocationTest, TheMomentGivesWayOnlyWhenTheForceMayNotShrinkFurther) {
+  const Airframe a = legion();
+  Allocator allocator(a);
+  const Wrench w{Vector3(0, 0, 40), Vector3(12, 0, 0)};
+  const Allocation out = allocator.update(w, Vector3::Zero());
+  EXPECT_DOUBLE_EQ(out.force_scale, 0.6);
+  EXPECT_GT(out.moment_scale, 0);
+  EXPECT_LT(out.moment_scale, 1);
+  for (const RotorOutput& o : out.outputs()) EXPECT_LE(o.thrust_N, 21 + 1e-9);
+}
+
+TEST(AllocationTest, LimitsHoldAndAreReportedForAnyDemand) {
+  const Airframe a = legion();
+  Allocator allocator(a);
+  std::mt19937 rng(3);
+  for (int i = 0; i < 500; ++i) {
+    const Wrench w{random_vector(rng, 150), random_vector(rng, 30)};
+    const Allocation out = allocator.update(w, random_vector(rng, 0.02));
+    for (const RotorOutput& o : out.outputs()) {
+      EXPECT_GE(o.thrust_N, 1.0);
+      EXPECT_LE(o.thrust_N, 21.0);
+      EXPECT_LE(std::abs(o.gimbal_rad[0]), 2.0);
+      EXPECT_LE(std::abs(o.gimbal_rad[1]), 2.0);
+    }
+    const bool reproduced = (out.achieved_B.force - w.force).norm() + (out.achieved_B.moment - w.moment).norm() < 1e-9;
+    EXPECT_NE(out.saturated(), reproduced);
+  }
+}
+
+TEST(AllocationTest, PitchingOverNeverFlipsAGimbal) {
+  // Up to 1.3 rad with a rolling moment on top; beyond 1.37 rad the outer gimbal itself comes to its limit.
+  const Airframe a = legion();
+  Allocator allocator(a);
+  std::array<RotorOutput, 3> before{};
+  double jump = 0;
+  for (int i = 0; i <= 1300; ++i) {
+    const Matrix3 R = Eigen::AngleAxisd(i * 1e-3, Vector3::UnitY()).toRotationMatrix();
+    const Wrench w{R.transpose() * Vector3(0, 0, a.mass_kg * gravity_m_s2), Vector3(0.1 * std::sin(i * .02), 0, 0)};
+    const Allocation out = allocator.update(w, Vector3::Zero());
+    EXPECT_FALSE(out.saturated());
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (i > 0) jump = std::max(jump, std::abs(out.rotors[k].gimbal_rad[0] - before[k].gimbal_rad[0]));
+      before[k] = out.rotors[k];
+    }
+  }
+  EXPECT_LT(jump, 0.1);
+}
+
+TEST(AllocationTest, FixedRotorsReproduceWhatTheyCan) {
+  Airframe a;
+  a.mass_kg = 1;
+  const double d = 0.1;
+  const double spin[] = {1, -1, 1, -1};
+  const Vector3 at[] = {{d, -d, 0}, {-d, -d, 0}, {-d, d, 0}, {d, d, 0}};
+  for (int k = 0; k < 4; ++k) a.rotors.push_back({at[k], spin[k] * 0.02, 0, 10, 0, 0});
+  Allocator allocator(a);
+  const Allocation out = allocator.update({Vector3(1, 0, 9.81), Vector3(0.1, -0.2, 0.03)}, Vector3::Zero());
+  EXPECT_NEAR(out.achieved_B.force.z(), 9.81, 1e-9);
+  EXPECT_NEAR(out.achieved_B.force.x(), 0, 1e-12);  // cannot be made without tilting
+  EXPECT_LT((out.achieved_B.moment - Vector3(0.1, -0.2, 0.03)).norm(), 1e-9);
+  for (const RotorOutput& o : out.outputs()) EXPECT_EQ(o.gimbal_rad, (std::array<double, 2>{0, 0}));
+}
+
+}  // namespace
+}  // namespace eciton::robot

@@ -1,0 +1,153 @@
+// What the generated headers state about a type, against values computed by hand from the XCDR1 rules and
+// against Fast DDS's generator (fastdds_sizes.hpp).
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "idl/all.hpp"
+#include "idl/every_kind.hpp"
+#include "tests/idl/fastdds_sizes.hpp"
+
+namespace eciton::bus {
+namespace {
+
+using eciton_test::wide::EveryKind;
+
+template <class T>
+std::vector<std::string> visited_names(bool key_only) {
+  std::vector<std::string> names;
+  const T sample{};
+  const auto visitor = [&names](std::string_view name, const auto&) { names.emplace_back(name); };
+  if (key_only) {
+    TypeTraits<T>::visit_key(visitor, sample);
+  } else {
+    TypeTraits<T>::visit(visitor, sample);
+  }
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(TypeTraitsTest, NamesTypesAsTheyAreCalledOnTheWire) {
+  EXPECT_EQ(TypeTraits<msg::ModuleState>::name, "eciton::msg::ModuleState");
+  EXPECT_EQ(TypeTraits<msg::Rotor>::name, "eciton::msg::Rotor");
+  EXPECT_EQ(TypeTraits<EveryKind>::name, "eciton_test::wide::EveryKind");
+}
+
+TEST(TypeTraitsTest, TellsTopicsFromNestedStructsAndKeyedFromUnkeyed) {
+  EXPECT_TRUE(TypeTraits<msg::ModuleState>::topic);
+  EXPECT_TRUE(TypeTraits<msg::ModuleState>::keyed);
+  EXPECT_FALSE(TypeTraits<msg::Rotor>::topic);
+  EXPECT_FALSE(TypeTraits<msg::Rotor>::keyed);
+  EXPECT_TRUE(TypeTraits<msg::Clock>::topic);
+  EXPECT_FALSE(TypeTraits<msg::Clock>::keyed);
+}
+
+TEST(TypeTraitsTest, ComputesTheGreatestSizeOfAFixedSizeType) {
+  // 4 header; id 0-4, stamp 8-16, mode 16-20, p 24-48, q 48-80, v 80-104, w 104-128, variance 128-224, age 224-232.
+  EXPECT_EQ(TypeTraits<msg::ModuleState>::size_max, 4U + 232U);
+  // Stamp 0-8, tick 8-16, flag 16-17: 21 bytes, padded to 24.
+  EXPECT_EQ(TypeTraits<msg::Clock>::size_max, 24U);
+}
+
+TEST(TypeTraitsTest, CountsStringsWithLengthAndTerminator) {
+  // id 0-4, goal 4-8, stamp 8-16, correlation 16-24, phase 24-28, reason 28: 4 + 127 + 1 to 160.
+  EXPECT_EQ(TypeTraits<msg::GoalStatus>::size_max, 4U + 160U);
+}
+
+TEST(TypeTraitsTest, AlignsEachElementOfASequenceOfStructs) {
+  // Beacon: id 0-4, stamp 8-16, incarnation 16-24, name 24-60, airframe 60-96, two modes 96-104, flag 104-105,
+  // airtime 112-120, sent 120-128, dropped 128-136, count 136-140. Echoes: the first 140-176 (id 140-144, then
+  // four int64), every further one 40 more (4 of padding after its id).
+  EXPECT_EQ(TypeTraits<msg::Beacon>::size_max, 4U + 176U + 15U * 40U);
+}
+
+TEST(TypeTraitsTest, ComputesTheSizeOfEveryKindOfMember) {
+  // flag 0, key_a 2-4, letter 4, key_b 5, raw 6, tiny 7, u16 8-10, i32 12-16, u32 16-20-24, i64 24-32, u64 32-40,
+  // single 40-44, stamp 48-56, key_c 56-64, word 64-68, mode 68-72, vector 72-96, inners: count 96-100, first 100,
+  // second 104-112, text 112-122; 122, 128-136, 136-146; pair: 146, 152-160, 160-170; 170, 176-184, 184-194;
+  // texts 196-204-212; words: count 212-216, 216-223, 224-231, 232-239; keywords: count 240-244, to 256; bytes:
+  // 256-260, to 265; numbers: count 268-272, to 288; last 288-289. With the header 293, padded to 296.
+  EXPECT_EQ(TypeTraits<EveryKind>::size_max, 296U);
+}
+
+TEST(TypeTraitsTest, ComputesTheSizeOfTheKeyAlone) {
+  EXPECT_EQ(TypeTraits<msg::ModuleState>::key_size, 4U);
+  EXPECT_EQ(TypeTraits<msg::LinkClaim>::key_size, 8U);
+  EXPECT_EQ(TypeTraits<msg::GoalStatus>::key_size, 8U);  // a number and an enum
+  EXPECT_EQ(TypeTraits<msg::Clock>::key_size, 0U);
+  EXPECT_EQ(TypeTraits<EveryKind>::key_size, 16U);  // int16 0-2, uint8 2-3, uint64 8-16
+}
+
+TEST(TypeTraitsTest, VisitsMembersInTheOrderOfTheWire) {
+  EXPECT_EQ(visited_names<msg::ModuleState>(false), (Names{"module_id", "stamp_ns", "mode", "p_WM_m", "q_WM",
+                                                           "v_WM_m_s", "w_WM_M_rad_s", "variance", "pose_age_s"}));
+  EXPECT_EQ(visited_names<msg::ModuleState>(true), (Names{"module_id"}));
+  EXPECT_EQ(visited_names<msg::LatchState>(true), (Names{"module_id", "port"}));
+  EXPECT_EQ(visited_names<EveryKind>(true), (Names{"key_a", "key_b", "key_c"}));
+  EXPECT_EQ(visited_names<msg::Clock>(true), Names{});
+}
+
+TEST(TypeTraitsTest, LetsAVisitorChangeTheSample) {
+  msg::Clock clock;
+  TypeTraits<msg::Clock>::visit(
+      []<class T>(std::string_view name, T& value) {
+        if (name == "tick") value = static_cast<T>(7);
+      },
+      clock);
+  EXPECT_EQ(clock, (msg::Clock{.stamp_ns = 0, .tick = 7, .imu_sampled = false}));
+}
+
+TEST(TypeTraitsTest, MapsIdlTypesToPlainCpp) {
+  EXPECT_TRUE((std::is_same_v<decltype(msg::ModuleState::p_WM_m), std::array<double, 3>>));
+  EXPECT_TRUE((std::is_same_v<decltype(msg::Beacon::name), BoundedString<31>>));
+  EXPECT_TRUE((std::is_same_v<decltype(msg::Beacon::peers), BoundedVector<msg::PeerEcho, 16>>));
+  EXPECT_TRUE((std::is_same_v<decltype(msg::LinkClaim::withdrawn), bool>));
+  EXPECT_TRUE((std::is_same_v<decltype(EveryKind::mode), eciton_test::IMUMode>));
+  EXPECT_TRUE((std::is_same_v<decltype(EveryKind::texts), std::array<BoundedString<3>, 2>>));
+}
+
+TEST(TypeTraitsTest, ServesMessagesAndNothingElse) {
+  EXPECT_TRUE(Message<msg::Beacon>);
+  EXPECT_TRUE(Message<msg::Rotor>);
+  EXPECT_FALSE(Message<msg::FlightMode>);
+  EXPECT_FALSE(Message<int>);
+}
+
+TEST(EnumTraitsTest, NamesTheValuesWithoutTheEnumsOwnName) {
+  using Traits = EnumTraits<msg::EstimatorMode>;
+  EXPECT_EQ(Traits::name, "eciton::msg::EstimatorMode");
+  EXPECT_EQ(Traits::names, (std::array<std::string_view, 4>{"initialising", "ready", "dead_reckoning", "lost"}));
+  EXPECT_EQ(static_cast<std::uint32_t>(msg::EstimatorMode::dead_reckoning), 2U);
+}
+
+TEST(EnumTraitsTest, TakesAnAcronymForOneWord) {
+  EXPECT_EQ(EnumTraits<eciton_test::IMUMode>::names, (std::array<std::string_view, 2>{"off", "on_board2"}));
+}
+
+TEST(EnumTraitsTest, AppendsAnUnderscoreToKeywordsInCppOnly) {
+  EXPECT_EQ(static_cast<std::uint32_t>(msg::FlightAction::goto_), 1U);
+  EXPECT_EQ(EnumTraits<msg::FlightAction>::names[1], "goto");
+}
+
+template <class... T>
+std::map<std::string_view, SerializedSize> own_sizes(std::type_identity<std::tuple<T...>>) {
+  return {{TypeTraits<T>::name, {TypeTraits<T>::size_max, TypeTraits<T>::key_size}}...};
+}
+
+TEST(SizeTest, AgreesWithFastDdsOnEveryType) {
+  auto own = own_sizes(std::type_identity<msg::AllTypes>{});
+  own.merge(own_sizes(std::type_identity<std::tuple<EveryKind, eciton_test::wide::Unkeyed, eciton_test::Vector>>{}));
+  const std::map<std::string_view, SerializedSize> theirs = fastdds_sizes();
+  EXPECT_EQ(own.size(), theirs.size());
+  for (const auto& [name, size] : theirs) {
+    ASSERT_TRUE(own.contains(name)) << name;
+    EXPECT_EQ(own.at(name).size_max, size.size_max) << name;
+    EXPECT_EQ(own.at(name).key_size, size.key_size) << name;
+  }
+}
+
+}  // namespace
+}  // namespace eciton::bus
