@@ -54,7 +54,6 @@ bus::ParticipantConfig ModuleConfig::swarm_participant(const std::string& proces
 void set_identity(ModuleConfig& config) {
   config.estimation.module_id = config.id;
   config.control.module_id = config.id;
-  config.control.wrench_rate_Hz = config.estimation.wrench_rate_Hz;
   config.control.observer_gain_1_s = config.estimation.observer_gain_1_s;
   config.docking.module_id = config.id;
   config.joints.module_id = config.id;

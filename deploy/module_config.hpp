@@ -58,7 +58,7 @@ struct ModuleConfig {
   HardwareConfig hal;
   estimation::EstimationConfig estimation;
   control::ControlConfig control;
-  docking::DockingConfig docking;
+  docking::DockingServiceConfig docking;
   joints::JointsConfig joints;
   radio::RadioConfig radio;
 

@@ -22,14 +22,18 @@ void serialize(Cdr& cdr, bool& good, const T& value) {
   }
 }
 
+/// Looked at before Fast CDR does: it would throw, and an exception comes from the heap.
+bool has_bytes(const Cdr& cdr, std::size_t size, std::size_t element_size, std::size_t count) {
+  const std::size_t at = cdr.getSerializedDataLength();
+  const std::size_t misaligned = (at - encapsulation_size) % element_size;
+  const std::size_t begin = misaligned == 0 ? at : at + element_size - misaligned;
+  return begin <= size && size - begin >= element_size * count;
+}
+
 template <class T>
-void deserialize(Cdr& cdr, bool& good, T& value) {
-  if (!good) return;
-  try {
-    cdr.deserialize(value);
-  } catch (const eprosima::fastcdr::exception::Exception&) {
-    good = false;
-  }
+void deserialize(Cdr& cdr, std::size_t size, bool& good, T& value) {
+  good = good && has_bytes(cdr, size, sizeof(T), 1);
+  if (good) cdr.deserialize(value);
 }
 
 }  // namespace
@@ -116,23 +120,20 @@ void Decoder::get(bool& value) {
   good_ = good_ && byte <= 1;
   value = byte == 1;
 }
-void Decoder::get(std::uint8_t& value) { deserialize(state().cdr, good_, value); }
-void Decoder::get(std::int32_t& value) { deserialize(state().cdr, good_, value); }
-void Decoder::get(std::uint32_t& value) { deserialize(state().cdr, good_, value); }
-void Decoder::get(std::int64_t& value) { deserialize(state().cdr, good_, value); }
-void Decoder::get(std::uint64_t& value) { deserialize(state().cdr, good_, value); }
+void Decoder::get(std::uint8_t& value) { deserialize(state().cdr, cdr_.size(), good_, value); }
+void Decoder::get(std::int32_t& value) { deserialize(state().cdr, cdr_.size(), good_, value); }
+void Decoder::get(std::uint32_t& value) { deserialize(state().cdr, cdr_.size(), good_, value); }
+void Decoder::get(std::int64_t& value) { deserialize(state().cdr, cdr_.size(), good_, value); }
+void Decoder::get(std::uint64_t& value) { deserialize(state().cdr, cdr_.size(), good_, value); }
 void Decoder::get(double& value) {
-  deserialize(state().cdr, good_, value);
+  deserialize(state().cdr, cdr_.size(), good_, value);
   good_ = good_ && std::isfinite(value);
 }
 
 void Decoder::get_array(double* values, std::size_t count) {
+  good_ = good_ && has_bytes(state().cdr, cdr_.size(), sizeof(double), count);
   if (!good_) return;
-  try {
-    state().cdr.deserializeArray(values, count);
-  } catch (const eprosima::fastcdr::exception::Exception&) {
-    good_ = false;
-  }
+  state().cdr.deserializeArray(values, count);
   for (std::size_t k = 0; k < count && good_; ++k) good_ = std::isfinite(values[k]);
 }
 
@@ -142,7 +143,10 @@ std::string_view Decoder::get_string(std::size_t bound) {
   const std::size_t at = state().cdr.getSerializedDataLength();
   good_ = good_ && size >= 1 && size <= bound + 1 && at + size <= cdr_.size() && cdr_[at + size - 1] == 0;
   if (!good_) return {};
-  state().cdr.jump(size);
+  // The zero is read, not jumped over: Fast CDR aligns what follows by the size of what was read last.
+  state().cdr.jump(size - 1);
+  char zero = 0;
+  state().cdr.deserialize(zero);
   const std::string_view text(reinterpret_cast<const char*>(cdr_.data()) + at, size - 1);
   good_ = text.find('\0') == std::string_view::npos;
   return good_ ? text : std::string_view{};

@@ -26,7 +26,7 @@ struct ParticipantConfig {
   std::uint32_t domain = 0;
   std::string name = "eciton";
   std::string network_interface = "lo";
-  std::vector<std::string> peers;  // none: multicast
+  std::vector<std::string> peers{};  // none: multicast
   Duration lease = std::chrono::seconds(3);
 };
 

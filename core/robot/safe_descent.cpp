@@ -12,7 +12,7 @@ SafeDescent::SafeDescent(const SafeDescentConfig& config, double mass_kg, const 
 void SafeDescent::start(SafeManoeuvre manoeuvre, const Matrix3& R_WB, double vertical_speed_m_s,
                         const Wrench& feed_forward_W) {
   manoeuvre_ = manoeuvre;
-  phase_ = manoeuvre == SafeManoeuvre::hold_hover ? SafePhase::holding : SafePhase::descending;
+  phase_ = manoeuvre == SafeManoeuvre::descend ? SafePhase::descending : SafePhase::holding;
   R_WB_hold_ = R_WB;
   feed_forward_W_ = feed_forward_W;
   vertical_speed_m_s_ = vertical_speed_m_s;
@@ -21,8 +21,8 @@ void SafeDescent::start(SafeManoeuvre manoeuvre, const Matrix3& R_WB, double ver
 
 Vector3 SafeDescent::attitude_error(const Matrix3& R_WB) const {
   Vector3 error;
-  if (manoeuvre_ == SafeManoeuvre::hold_hover) {
-    error = log_so3(R_WB.transpose() * R_WB_hold_);  // neighbours hold theirs: levelling would work against them
+  if (manoeuvre_ == SafeManoeuvre::hold_hover || phase_ == SafePhase::holding) {
+    error = log_so3(R_WB.transpose() * R_WB_hold_);
   } else {
     // Least turn that brings body z upright; yaw is free, it is not known well.
     const Vector3 up_B = R_WB.transpose().col(2);

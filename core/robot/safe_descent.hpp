@@ -8,14 +8,15 @@
 namespace eciton::robot {
 
 enum class SafeManoeuvre {
-  descend,    // alone: level and descend
-  hold_hover // in a chain: hold attitude and hover, the feed-forward fading, then descend in that attitude
+  descend,          // alone: level and descend at once
+  hold_then_level,  // alone: hold attitude and hover, the feed-forward fading, then level and descend
+  hold_hover        // in a chain: the same, but descend in that attitude, for neighbours hold theirs
 };
 
 enum class SafePhase { idle, holding, descending, landed };
 
 struct SafeDescentConfig {
-  double hold_s = 2.0;                        // only after SafeManoeuvre::hold_hover
+  double hold_s = 2.0;                        // not for SafeManoeuvre::descend
   double feed_forward_time_constant_s = 0.5;
   double descent_m_s = 0.5;
   double vertical_gain_1_s = 2.0;             // on the vertical speed integrated from the accelerometer

@@ -96,7 +96,7 @@ void CycleStatistics::fill(msg::Heartbeat& heartbeat, Duration now) const noexce
 }
 
 std::string CycleStatistics::table_heading() {
-  return "service           cycles  period_us | jitter_us  p50     p99      max | execution_us  mean    p99      max "
+  return "service        cycles  period_us | jitter_us  p50     p99      max | execution_us  mean    p99      max "
          "|"
          " overruns timeouts";
 }

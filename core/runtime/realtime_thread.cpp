@@ -6,7 +6,7 @@
 #include <sys/mman.h>
 
 #include <array>
-#include <cstring>
+#include <cerrno>
 
 namespace eciton::runtime {
 
@@ -21,18 +21,17 @@ namespace {
 
 std::optional<std::string> make_realtime(int priority) {
   std::string missing;
-  if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) missing = "CAP_IPC_LOCK (memory stays pageable)";
+  if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0) missing = "memory stays pageable without CAP_IPC_LOCK";
   prefault_stack();
   // SCHED_RESET_ON_FORK: what the process starts later is not real-time by accident.
   const sched_param parameters{.sched_priority = priority};
-  if (const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters);
-      error != 0) {
-    if (!missing.empty()) missing += " and ";
-    missing += error == EPERM ? "CAP_SYS_NICE (no SCHED_FIFO)"
-                              : "a priority from 1 to 99, not " + std::to_string(priority) + " (no SCHED_FIFO)";
+  const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters);
+  if (error != 0) {
+    if (!missing.empty()) missing += ", ";
+    missing += error == EPERM ? "no SCHED_FIFO without CAP_SYS_NICE (under systemd: AmbientCapabilities=)"
+                              : "no SCHED_FIFO at priority " + std::to_string(priority) + ": 1 to 99 would be right";
   }
-  if (missing.empty()) return std::nullopt;
-  return "not real-time: missing " + missing + "; under systemd give it by AmbientCapabilities=";
+  return missing.empty() ? std::nullopt : std::optional("not real-time: " + missing);
 }
 
 }  // namespace eciton::runtime

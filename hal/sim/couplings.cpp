@@ -93,6 +93,7 @@ void Couplings::step_open(std::size_t k) {
   const PairIndex& pair = world_.pairs[k];
   PortState &male = ports_[pair.male], &female = ports_[pair.female];
   if (male.occupied || female.occupied) return;
+  if (male.reports || female.reports) return;  // a broken latch: neither its magnet nor its hook holds
   if ((male.X_WP.p - female.X_WP.p).squaredNorm() > magnet_reach_m * magnet_reach_m) return;
   pull(pair);
   if (!seated(pair)) return;

@@ -9,10 +9,11 @@
 namespace eciton::control {
 namespace {
 
-constexpr Duration estimation_lost_after = std::chrono::milliseconds(100);
-constexpr double landed_gap_m = 0.25;      // the reference so far below the module: it stands on something
-constexpr double landed_speed_m_s = 0.08;
-constexpr double landed_s = 0.5;
+ContactLaw contact_law(const std::string& name) {
+  return name == "none" ? ContactLaw::none : name == "paper" ? ContactLaw::paper : ContactLaw::local;
+}
+
+constexpr Duration law_silence = std::chrono::milliseconds(300);  // without an estimate: the feed-forward fades
 
 robot::Pose pose_of(const msg::ModuleState& s) { return {robot::vector(s.p_WM_m), robot::rotation(s.q_WM)}; }
 
@@ -27,9 +28,7 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
     : config_(config),
       airframe_(airframe),
       reference_(airframe, {.speed_m_s = config.speed_m_s}),
-      law_({.law = contact_law(config.law),
-            .share_rate_Hz = config.wrench_rate_Hz,
-            .observer_gain_1_s = config.observer_gain_1_s}),
+      law_({.law = contact_law(config.law), .observer_gain_1_s = config.observer_gain_1_s}),
       allocator_(airframe),
       module_state_(ring.create_reader(topics::module_state)),
       joint_state_(ring.create_reader(topics::joint_state)),
@@ -51,11 +50,12 @@ void ControlService::step(TimePoint now) noexcept {
   take_surroundings();
   take_chain(now);
   take_wrenches(now);
+  judge(now);
   take_requests(now);
   take_flight_goals(now);
   take_morph_goals(now);
   follow_mode(now);
-  if (flight_.flying()) {
+  if (flying(mode_)) {
     write_rotors(now);
   } else {
     write_idle(now);
@@ -155,7 +155,7 @@ void ControlService::enter_chain(const msg::ChainView& view, TimePoint now) noex
                   seconds(now));
 }
 
-void ControlService::take_wrenches(TimePoint) noexcept {
+void ControlService::take_wrenches(TimePoint now) noexcept {
   while (const auto sample = external_wrench_.take()) {
     const msg::ExternalWrench& w = sample->value;
     if (w.module_id != config_.module_id) continue;
@@ -164,18 +164,23 @@ void ControlService::take_wrenches(TimePoint) noexcept {
   while (const auto sample = contact_wrench_.take()) {
     const msg::ContactWrench& w = sample->value;
     if (w.module_id != config_.module_id || !in_chain() || w.epoch != view_.active_epoch) continue;
-    std::array<LawMember, robot::members_max> members;
+    std::array<ChainMember, robot::members_max> members;
     std::size_t own = 0;
     for (std::size_t k = 0; k < w.members.size(); ++k) {
       const msg::MemberWrench& m = w.members[k];
       if (m.module_id == config_.module_id) own = k;
-      members[k] = {.r_W = robot::vector(m.r_W_m),
-                    .P_W = robot::vector(m.link_W_m),
-                    .d_W = {robot::vector(m.d_force_W_N), robot::vector(m.d_moment_W_Nm)},
-                    .c_W = {robot::vector(m.link_force_W_N), robot::vector(m.link_moment_W_Nm)},
+      members[k] = {.d_W = {robot::vector(m.d_force_W_N), robot::vector(m.d_moment_W_Nm)},
+                    .contact_W = {robot::vector(m.link_force_W_N), robot::vector(m.link_moment_W_Nm)},
+                    .r_W = robot::vector(m.r_W_m),
+                    .link_W = robot::vector(m.link_W_m),
                     .age_s = m.age_s};
     }
-    law_.update(std::span<const LawMember>(members).first(w.members.size()), own);
+    const double dt_s = std::clamp(to_s(now - law_updated_), 0.0, 0.1);
+    law_updated_ = now;
+    law_.update(std::span<const ChainMember>(members).first(w.members.size()), own, {}, dt_s);
+  }
+  if (in_chain() && now - law_updated_ > law_silence) {
+    law_.fade(to_s(now - last_step_));
   }
 }
 
@@ -184,20 +189,16 @@ void ControlService::take_requests(TimePoint now) noexcept {
     const msg::ModeRequest& request = sample->value;
     if (request.module_id != config_.module_id || request.correlation_id == answered_mode_) continue;
     answered_mode_ = request.correlation_id;
-    const char* refusal = nullptr;
+    FlightDecision decision{.mode = mode_};
     switch (request.action) {
-      case msg::ModeAction::arm:
-        refusal = duplicate_id_ ? "another module with this id is on the air: give one of them another id"
-                                : flight_.arm(state_.mode == msg::EstimatorMode::ready &&
-                                              now - state_at_ < estimation_lost_after);
-        break;
-      case msg::ModeAction::disarm: refusal = flight_.disarm(); break;
-      case msg::ModeAction::stop: flight_.stop(); break;
+      case msg::ModeAction::arm: decision = decide(mode_, FlightRequest::arm, conditions_); break;
+      case msg::ModeAction::disarm: decision = decide(mode_, FlightRequest::disarm, conditions_); break;
+      case msg::ModeAction::stop: decision = decide(mode_, FlightRequest::stop, conditions_); break;
       case msg::ModeAction::zero: break;  // estimation's
     }
+    mode_ = decision.mode;
     answer(msg::GoalKind::mode, request.correlation_id,
-           refusal == nullptr ? msg::GoalPhase::succeeded : msg::GoalPhase::refused, refusal == nullptr ? "" : refusal,
-           now);
+           decision.accepted ? msg::GoalPhase::succeeded : msg::GoalPhase::refused, decision.reason, now);
   }
 }
 
@@ -206,7 +207,9 @@ void ControlService::take_flight_goals(TimePoint now) noexcept {
     const msg::FlightGoal& goal = sample->value;
     const bool own = goal.module_id == config_.module_id;
     if (goal.action == msg::FlightAction::track) {
-      if (own && goal.source == msg::GoalSource::docking && !in_chain() && flight_.track() == nullptr) {
+      if (own && goal.source == msg::GoalSource::docking && !in_chain() &&
+          decide(mode_, FlightRequest::go_to, conditions_).accepted) {
+        mode_ = FlightMode::hover;
         reference_.track({robot::vector(goal.p_WM_m), robot::rotation(goal.q_WM)}, robot::vector(goal.v_WM_m_s),
                          seconds(from_ns(goal.stamp_ns)));
         goal_pending_ = false;
@@ -217,24 +220,30 @@ void ControlService::take_flight_goals(TimePoint now) noexcept {
     if (!own && !(in_chain() && is_member(goal.module_id))) continue;
     if (goal.correlation_id == answered_flight_) continue;
     answered_flight_ = goal.correlation_id;
-    const char* refusal = nullptr;
-    switch (goal.action) {
-      case msg::FlightAction::takeoff: refusal = flight_.takeoff(); break;
-      case msg::FlightAction::goto_:
-        refusal = docking_.phase != msg::DockingPhase::idle ? "docking is under way: wait, or undock" : flight_.move();
-        break;
-      case msg::FlightAction::land:
-        refusal = in_chain() ? "a chain does not land: undock first" : flight_.land();
-        break;
-      case msg::FlightAction::track: break;
-    }
+    const FlightDecision decision = decide_goal(goal);
+    mode_ = decision.mode;
     if (own) {
       answer(msg::GoalKind::flight, goal.correlation_id,
-             refusal == nullptr ? msg::GoalPhase::accepted : msg::GoalPhase::refused, refusal == nullptr ? "" : refusal,
-             now);
+             decision.accepted ? msg::GoalPhase::accepted : msg::GoalPhase::refused, decision.reason, now);
     }
-    if (refusal == nullptr) begin(goal, now);
+    if (decision.accepted) begin(goal, now);
   }
+}
+
+FlightDecision ControlService::decide_goal(const msg::FlightGoal& goal) const noexcept {
+  switch (goal.action) {
+    case msg::FlightAction::takeoff: return decide(mode_, FlightRequest::takeoff, conditions_);
+    case msg::FlightAction::goto_:
+      if (docking_.phase != msg::DockingPhase::idle && docking_.phase != msg::DockingPhase::docked) {
+        return {mode_, false, "docking is under way: wait until it is done"};
+      }
+      return decide(mode_, FlightRequest::go_to, conditions_);
+    case msg::FlightAction::land:
+      if (in_chain()) return {mode_, false, "a chain does not land: undock first"};
+      return decide(mode_, FlightRequest::land, conditions_);
+    case msg::FlightAction::track: break;
+  }
+  return {mode_, false, "not a goal for an operator"};
 }
 
 void ControlService::begin(const msg::FlightGoal& goal, TimePoint now) noexcept {
@@ -257,7 +266,7 @@ void ControlService::begin(const msg::FlightGoal& goal, TimePoint now) noexcept 
       }
       break;
     case msg::FlightAction::land:
-      landing_still_s_ = 0;
+      touchdown_.reset();
       reference_.descend(config_.landing_m_s, now_s);
       break;
     case msg::FlightAction::track: break;
@@ -269,41 +278,39 @@ void ControlService::take_morph_goals(TimePoint now) noexcept {
     const msg::MorphGoal& goal = sample->value;
     if (!in_chain() || goal.epoch != view_.active_epoch || goal.correlation_id == answered_morph_) continue;
     answered_morph_ = goal.correlation_id;
-    // The joints service of the member it names answers, by this same check.
-    const std::span<const double> target(goal.joint_position_rad.data(), goal.joint_position_rad.size());
-    if (robot::refuse_morph(airframe_, view_.members.size(), target)) continue;
-    std::array<robot::ScalarMotion, robot::coordinates_max> from;
-    const double start_s = std::max(seconds(now), seconds(from_ns(goal.start_ns)));
-    reference_.joints().at(start_s, std::span(from).first(target.size()));
-    robot::JointMotion joints;
-    joints.go(std::span<const robot::ScalarMotion>(from).first(target.size()), target, start_s,
-              robot::morph_rate(goal.rate_rad_s), robot::morph_acceleration_rad_s2);
-    reference_.morph(joints);
+    // The joints service of the member it names answers; it comes to the same verdict.
+    const std::span<const double> joint_rad(goal.joint_position_rad.data(), goal.joint_position_rad.size());
+    const double now_s = seconds(now);
+    static_cast<void>(
+        reference_.morph(joint_rad, goal.rate_rad_s, std::max(now_s, seconds(from_ns(goal.start_ns))), now_s));
   }
 }
 
+void ControlService::judge(TimePoint now) noexcept {
+  const double dt_s = first_step_ ? 0 : to_s(now - last_step_);
+  const FlightModeConfig limits;
+  conditions_.state_ready = state_.mode == msg::EstimatorMode::ready;
+  conditions_.state_usable = conditions_.state_ready || state_.mode == msg::EstimatorMode::dead_reckoning;
+  conditions_.state_age_s = to_s(now - state_at_);
+  const bool good = conditions_.state_usable && conditions_.state_age_s <= limits.state_age_s_max;
+  conditions_.state_good_s = good ? conditions_.state_good_s + dt_s : 0;
+  conditions_.trajectory_finished = goal_pending_ && reference_.arrived(seconds(now));
+  conditions_.landed = mode_ == FlightMode::land &&
+                       touchdown_.update(allocation_.achieved_B.force.norm(),
+                                         airframe_.mass_kg * robot::gravity_m_s2, motion_.v_WM.z(), dt_s);
+  conditions_.duplicate_id = duplicate_id_;
+}
+
 void ControlService::follow_mode(TimePoint now) noexcept {
-  const double now_s = seconds(now);
-  const bool lost = now - state_at_ > estimation_lost_after || state_.mode == msg::EstimatorMode::lost ||
-                    state_.mode == msg::EstimatorMode::initialising;
-  if (flight_.estimation(lost) == FlightModeMachine::Change::recovered) {
+  const FlightMode before = mode_;
+  mode_ = advance(before, conditions_).mode;
+  if (before == FlightMode::failsafe && mode_ == FlightMode::hover) {
     reference_.hold({motion_.p_WM, upright(motion_.R_WM)});
     pose_control_.reset();
   }
-  if (flight_.mode() == FlightMode::land) {
-    const double below_m = motion_.p_WM.z() - reference_.at(now_s).p_WM.z();
-    const bool still = below_m > landed_gap_m && motion_.v_WM.norm() < landed_speed_m_s;
-    landing_still_s_ = still ? landing_still_s_ + to_s(now - last_step_) : 0;
-    if (landing_still_s_ > landed_s) {
-      flight_.landed();
-      answer(msg::GoalKind::flight, goal_.correlation_id, msg::GoalPhase::succeeded, "", now);
-      goal_pending_ = false;
-    }
-    return;
-  }
-  if (!goal_pending_ || !reference_.arrived(now_s)) return;
+  const bool done = goal_pending_ && (conditions_.trajectory_finished || conditions_.landed);
+  if (!done) return;
   goal_pending_ = false;
-  flight_.arrived();
   if (goal_.module_id == config_.module_id) {
     answer(msg::GoalKind::flight, goal_.correlation_id, msg::GoalPhase::succeeded, "", now);
   }
@@ -312,14 +319,14 @@ void ControlService::follow_mode(TimePoint now) noexcept {
 void ControlService::write_rotors(TimePoint now) noexcept {
   // With the state lost there is nothing to control by: silence hands over to the hardware host, which flies
   // the module down on the IMU.
-  if (flight_.mode() == FlightMode::failsafe) return;
+  if (mode_ == FlightMode::failsafe) return;
   const double dt_s = first_step_ ? config_.period_s : std::clamp(to_s(now - last_step_), 1e-4, 0.02);
   const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
   const robot::Wrench feed_forward_W =
       in_chain() ? law_.feed_forward_W()
-                 : feedback_.update({.external_W = external_W_,
-                                     .enabled = config_.disturbance_feedback,
-                                     .contact = docking_contact()},
+                 : feedback_.update(config_.disturbance_feedback ? external_W_ : robot::Wrench{},
+                                    feedback_phase(docking_.phase != msg::DockingPhase::idle, docking_.commanded_gap_m,
+                                                   docking_.declared_by != msg::DeclaredBy::nothing),
                                     dt_s);
   const robot::Wrench demanded_B = pose_control_.update(
       {.state = motion_,
@@ -347,7 +354,7 @@ void ControlService::write_idle(TimePoint now) noexcept {
   out.module_id = config_.module_id;
   out.stamp_ns = to_ns(now);
   out.state_stamp_ns = state_.stamp_ns;
-  out.armed = flight_.mode() == FlightMode::armed;
+  out.armed = mode_ == FlightMode::armed;
   out.safe_output = msg::SafeOutput::motors_off;
   for (const robot::RotorGeometry& rotor : airframe_.rotors) {
     out.rotors.push_back({out.armed ? rotor.thrust_N_min : 0, {}});
@@ -369,15 +376,15 @@ void ControlService::answer(msg::GoalKind kind, std::uint64_t correlation_id, ms
 }
 
 void ControlService::report_mode(TimePoint now) noexcept {
-  if (flight_.mode() == reported_mode_) return;
+  if (mode_ == reported_mode_) return;
   const auto text = [](FlightMode mode) {
     return bus::EnumTraits<msg::FlightMode>::names[static_cast<std::size_t>(mode)];
   };
   msg::Event out{.module_id = config_.module_id, .stamp_ns = to_ns(now), .service = "control", .machine = "flight"};
   out.from = text(reported_mode_);
-  out.to = text(flight_.mode());
+  out.to = text(mode_);
   event_.write(out);
-  reported_mode_ = flight_.mode();
+  reported_mode_ = mode_;
 }
 
 }  // namespace eciton::control

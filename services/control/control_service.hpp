@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
 #include "core/robot/allocation.hpp"
 #include "core/robot/kinematics.hpp"
@@ -26,7 +27,6 @@ struct ControlConfig {
   double takeoff_m_s = 0.5;
   double landing_m_s = 0.3;
   double speed_m_s = 0.5;
-  double wrench_rate_Hz = 100;         // as estimation's config says
   double observer_gain_1_s = 10;       // as estimation's config says: the law's rate follows from it
 
   template <class V>
@@ -49,7 +49,7 @@ class ControlService final : public runtime::Service {
     return runtime::on(module_state_, from_s(config_.period_s), runtime::Phase::control);
   }
   void step(TimePoint now) noexcept override;
-  void describe(msg::Heartbeat& heartbeat) const noexcept override { heartbeat.flight_mode = to_message(flight_.mode()); }
+  void describe(msg::Heartbeat& heartbeat) const noexcept override { heartbeat.flight_mode = to_message(mode_); }
 
  private:
   static msg::FlightMode to_message(FlightMode mode) { return static_cast<msg::FlightMode>(mode); }
@@ -66,6 +66,8 @@ class ControlService final : public runtime::Service {
 
   void enter_chain(const msg::ChainView& view, TimePoint now) noexcept;
   void begin(const msg::FlightGoal& goal, TimePoint now) noexcept;
+  FlightDecision decide_goal(const msg::FlightGoal& goal) const noexcept;
+  void judge(TimePoint now) noexcept;
   void follow_mode(TimePoint now) noexcept;
   void write_rotors(TimePoint now) noexcept;
   void write_idle(TimePoint now) noexcept;
@@ -78,12 +80,15 @@ class ControlService final : public runtime::Service {
 
   ControlConfig config_;
   robot::Airframe airframe_;
-  FlightModeMachine flight_;
   FlightReference reference_;
   PoseControl pose_control_;
   ContactWrenchLaw law_;
   DisturbanceFeedback feedback_;
   robot::Allocator allocator_;
+  TouchdownDetector touchdown_;
+  FlightMode mode_ = FlightMode::disarmed;
+  FlightConditions conditions_;
+  TimePoint law_updated_{};
 
   TimePoint epoch_{};           // of `seconds`: the first step
   TimePoint last_step_{};
@@ -111,7 +116,6 @@ class ControlService final : public runtime::Service {
   bool goal_pending_ = false;
   std::uint64_t answered_mode_ = 0, answered_flight_ = 0, answered_morph_ = 0;
   FlightMode reported_mode_ = FlightMode::disarmed;
-  double landing_still_s_ = 0;
 
   bus::Reader<msg::ModuleState> module_state_;
   bus::Reader<msg::JointState> joint_state_;

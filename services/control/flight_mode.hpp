@@ -1,45 +1,68 @@
-// The flight modes of a module and what may follow what. Pure: it is told what happened and says what holds.
+// The flight modes of one module as a pure transition function. Requests are granted or refused with a
+// reason; what happens by itself (arriving, landing, losing the state) is a transition too.
 #pragma once
+
+#include <optional>
 
 namespace eciton::control {
 
-enum class FlightMode {
-  disarmed,
-  armed,     // motors idle, on the ground
-  takeoff,
-  hover,
-  move,
-  land,
-  failsafe,  // in the air without a state: the hardware host flies it down
-  stopped    // killed: motors off until armed again
+enum class FlightMode { disarmed, armed, takeoff, hover, move, land, failsafe, stopped };
+enum class FlightRequest { arm, disarm, stop, takeoff, go_to, land };
+
+const char* name(FlightMode mode);
+
+struct FlightModeConfig {
+  double state_age_s_max = 0.1;     // older, in the air: fail-safe
+  double recovered_s = 0.3;         // the state must be good for so long before hover is resumed
 };
 
-/// Requests return nullptr when they are granted, otherwise why not (a literal).
-class FlightModeMachine {
+/// What the mode depends on, at one time.
+struct FlightConditions {
+  bool state_ready = false;         // the estimator says ready
+  bool state_usable = false;        // ready or dead reckoning
+  double state_age_s = 1e9;         // of the last state
+  double state_good_s = 0;          // usable and fresh without a break for so long
+  bool trajectory_finished = false;
+  bool landed = false;
+  bool duplicate_id = false;        // another module carries our id
+  bool emergency_descent_over = false;
+};
+
+struct FlightDecision {
+  FlightMode mode = FlightMode::disarmed;
+  bool accepted = true;             // of the request, if there was one
+  const char* reason = "";          // of a refusal, or of a transition by itself; a static string
+};
+
+constexpr bool flying(FlightMode mode) {
+  return mode == FlightMode::takeoff || mode == FlightMode::hover || mode == FlightMode::move ||
+         mode == FlightMode::land || mode == FlightMode::failsafe;
+}
+/// Rotors turn.
+constexpr bool powered(FlightMode mode) { return mode == FlightMode::armed || flying(mode); }
+
+/// One request. `stop` is granted in any mode; motors off at once.
+FlightDecision decide(FlightMode mode, FlightRequest request, const FlightConditions& now,
+                      const FlightModeConfig& config = {});
+/// What happens by itself.
+FlightDecision advance(FlightMode mode, const FlightConditions& now, const FlightModeConfig& config = {});
+
+struct TouchdownConfig {
+  double force_share_max = 0.7;     // of the weight, asked of the rotors
+  double speed_m_s_max = 0.1;
+  double for_s = 0.4;
+};
+
+/// Standing on the ground while landing: little thrust is asked for and still nothing falls.
+class TouchdownDetector {
  public:
-  FlightMode mode() const { return mode_; }
-  /// Whether pose control is to act (or would, had it a state).
-  bool flying() const;
-
-  /// `ready`: the estimator is, and its state is fresh.
-  const char* arm(bool ready);
-  const char* disarm();
-  const char* takeoff();
-  const char* move();
-  const char* track();  // a reference of the docking service's
-  const char* land();
-  void stop() { mode_ = FlightMode::stopped; }
-
-  void arrived();  // at the end of a takeoff or a move
-  void landed() { mode_ = FlightMode::disarmed; }
-
-  enum class Change { none, lost, recovered };
-  /// Told every cycle whether the estimate is lost.
-  Change estimation(bool lost);
+  explicit TouchdownDetector(const TouchdownConfig& config = {}) : config_(config) {}
+  bool update(double demanded_force_N, double weight_N, double vertical_speed_m_s, double dt_s);
+  void reset() { standing_s_ = 0; }
 
  private:
-  const char* refuse_unless_free() const;
-  FlightMode mode_ = FlightMode::disarmed;
+  TouchdownConfig config_;
+  double standing_s_ = 0;
 };
 
 }  // namespace eciton::control

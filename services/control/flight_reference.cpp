@@ -11,7 +11,7 @@ using robot::PoseMotion;
 using robot::PoseReference;
 
 FlightReference::FlightReference(const robot::Airframe& airframe, const FlightReferenceConfig& config)
-    : airframe_(airframe), config_(config) {}
+    : airframe_(airframe), config_(config), joints_(airframe) {}
 
 void FlightReference::hold(const Pose& X_WM) {
   kind_ = Kind::motion;
@@ -52,7 +52,7 @@ void FlightReference::join(const ChainPlace& place, std::span<const double> join
   in_chain_ = true;
   kind_ = Kind::motion;
   place_ = place;
-  joints_ = robot::JointMotion(joint_rad);
+  joints_.reset(joint_rad, place.base);
   motion_ = PoseMotion(X_WM_base);
   offset_p_.setZero();
   offset_R_.setIdentity();

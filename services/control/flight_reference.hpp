@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "core/robot/chain_trajectory.hpp"
+#include "core/robot/joint_trajectory.hpp"
 #include "core/robot/trajectory.hpp"
 
 namespace eciton::control {
@@ -41,8 +43,11 @@ class FlightReference {
   void join(const ChainPlace& place, std::span<const double> joint_rad, const robot::Pose& X_WM_base, double now_s);
   /// In a chain: the base (as all members know it) moves to a goal pose of its M.
   void move_base(const robot::Pose& X_WM_goal, double speed_m_s, double start_s, double now_s);
-  /// In a chain: the joints move; the reference follows.
-  void morph(const robot::JointMotion& joints) { joints_ = joints; }
+  /// In a chain: the joints move and the reference follows. A refusal changes nothing.
+  std::optional<robot::LimitFault> morph(std::span<const double> joint_rad, double rate_rad_s, double start_s,
+                                         double now_s) {
+    return joints_.go(joint_rad, rate_rad_s, now_s, start_s);
+  }
   /// Out of the chain, standing where the reference is now.
   void leave(double now_s);
 
@@ -50,7 +55,6 @@ class FlightReference {
   bool in_chain() const { return in_chain_; }
   /// Whether the last motion has come to its end.
   bool arrived(double now_s) const;
-  const robot::JointMotion& joints() const { return joints_; }
 
  private:
   enum class Kind { motion, track, descend };
@@ -68,7 +72,7 @@ class FlightReference {
   ChainPlace place_;
   robot::Vector3 offset_p_ = robot::Vector3::Zero();      // from what the shared base says to where this
   robot::Matrix3 offset_R_ = robot::Matrix3::Identity();  // module sees itself, fixed when it joined
-  robot::JointMotion joints_;
+  robot::JointTrajectory joints_;   // of all members
 };
 
 }  // namespace eciton::control

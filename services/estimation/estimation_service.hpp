@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
 #include "core/robot/actuator_lag.hpp"
 #include "core/robot/kinematics.hpp"

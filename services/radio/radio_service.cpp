@@ -41,6 +41,7 @@ RadioService::RadioService(bus::Participant& ring, bus::Participant& swarm, cons
       docking_state_(ring.create_reader(topics::docking_state)),
       chain_view_(ring.create_reader(topics::chain_view)),
       module_state_(ring.create_reader(topics::module_state)),
+      external_wrench_(ring.create_reader(topics::external_wrench)),
       heartbeat_(ring.create_reader(topics::heartbeat)),
       beacons_heard_(swarm.create_reader(topics::beacon)),
       beacon_to_swarm_(swarm.create_writer(topics::beacon)),
@@ -130,15 +131,23 @@ void RadioService::watch_own_module() noexcept {
   while (const auto view = chain_view_.take()) {
     if (view->value.module_id == config_.module_id) chained_ = view->value.members.size() > 1 || view->value.epoch != 0;
   }
+  const msg::Beacon before = beacon_;
   while (const auto state = module_state_.take()) {
     if (state->value.module_id == config_.module_id) beacon_.estimator_mode = state->value.mode;
   }
+  while (const auto wrench = external_wrench_.take()) {
+    if (wrench->value.module_id == config_.module_id) beacon_.wrench_zeroed = wrench->value.zeroed;
+  }
   while (const auto beat = heartbeat_.take()) {
-    if (beat->value.module_id == config_.module_id && beat->value.service == "control") beacon_.flight_mode = beat->value.flight_mode;
+    const msg::Heartbeat& b = beat->value;
+    if (b.module_id == config_.module_id && b.service == "control") beacon_.flight_mode = b.flight_mode;
   }
   const bool was_near = near_;
   near_ = docking_ || courted_ || chained_;
-  if (near_ && !was_near) beacon_due_ = std::min(beacon_due_, now_);
+  // What peers decide by is told at once, not at the next beacon.
+  const bool changed = beacon_.wrench_zeroed != before.wrench_zeroed || beacon_.flight_mode != before.flight_mode ||
+                       beacon_.estimator_mode != before.estimator_mode || near_ != was_near;
+  if (changed) beacon_due_ = std::min(beacon_due_, now_);
 }
 
 void RadioService::hear_beacons(TimePoint now) noexcept {
@@ -161,7 +170,8 @@ void RadioService::hear_beacons(TimePoint now) noexcept {
 }
 
 void RadioService::meet_own_id(const msg::Beacon& beacon, TimePoint now) noexcept {
-  if (beacon.incarnation == config_.incarnation || duplicate_id_) return;
+  own_id_.hear(now, beacon.incarnation, from_ns(beacon.stamp_ns));
+  if (duplicate_id_ || !own_id_.met(now)) return;
   duplicate_id_ = true;
   beacon_due_ = now;
   msg::Fault out{.module_id = config_.module_id, .stamp_ns = to_ns(now), .severity = msg::Severity::error};
@@ -194,6 +204,7 @@ void RadioService::send_beacon(TimePoint now) noexcept {
   beacon_.airtime = airtime_.share(now);
   beacon_.sent = sent_;
   beacon_.dropped = dropped_;
+  own_id_.hear(now, config_.incarnation, now);
   beacon_to_swarm_.write(beacon_);
   beacon_to_ring_.write(beacon_);
   beacon_due_ = now + from_s(near_ ? config_.beacon_near_period_s : config_.beacon_period_s);

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
 #include "core/runtime/service.hpp"
 #include "idl/topics.hpp"
 #include "services/radio/airtime.hpp"
+#include "services/radio/duplicate_id.hpp"
 #include "services/radio/peer_clock.hpp"
 
 namespace eciton::radio {
@@ -70,6 +72,7 @@ class RadioService final : public runtime::Service {
   bool docking_ = false;
   bool courted_ = false;    // a peer approaches us
   bool chained_ = false;
+  DuplicateId own_id_;
   bool duplicate_id_ = false;
   Airtime airtime_;
   std::uint64_t sent_ = 0;
@@ -80,6 +83,7 @@ class RadioService final : public runtime::Service {
   bus::Reader<msg::DockingState> docking_state_;
   bus::Reader<msg::ChainView> chain_view_;
   bus::Reader<msg::ModuleState> module_state_;
+  bus::Reader<msg::ExternalWrench> external_wrench_;
   bus::Reader<msg::Heartbeat> heartbeat_;
   bus::Reader<msg::Beacon> beacons_heard_;
   bus::Writer<msg::Beacon> beacon_to_swarm_;

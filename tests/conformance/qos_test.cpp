@@ -160,6 +160,27 @@ TEST_P(QosConformance, CountsWhatItsOwnQueueDrops) {
   EXPECT_EQ(a.dropped(), 37u);
 }
 
+TEST_P(QosConformance, AFullQueueGivesWayOnlyToWhatItTakesIn) {
+  auto writer = a.create_raw_writer(info(topics::link_claim));
+  auto reader = a.create_reader(topics::link_claim);
+  std::array<std::uint8_t, TypeTraits<msg::LinkClaim>::size_max> bytes{};
+  const auto write = [&](std::uint32_t key, std::uint64_t number, std::size_t missing = 0) {
+    const auto size = encode(claim(key, 0, number), bytes);
+    writer.write(std::span(bytes).first(size - missing));
+  };
+  for (std::uint32_t key = 0; key < 64; ++key) write(key, 1);
+  write(99, 1, 8);  // malformed
+  write(5, 2);      // replaces its own
+  EXPECT_EQ(reader.statistics().dropped_malformed, 1u);
+  EXPECT_EQ(reader.statistics().replaced, 1u);
+  EXPECT_EQ(reader.statistics().dropped_overflow, 0u);
+  write(98, 1);  // a key more than there is room for: the oldest goes
+  EXPECT_EQ(reader.statistics().dropped_overflow, 1u);
+  for (std::uint32_t key = 1; key < 64; ++key) EXPECT_EQ(reader.take()->value, claim(key, 0, key == 5 ? 2 : 1));
+  EXPECT_EQ(reader.take()->value, claim(98, 0, 1));
+  EXPECT_FALSE(reader.take());
+}
+
 INSTANTIATE_TEST_SUITE_P(Qos, QosConformance, ::testing::ValuesIn(all_pairs), name_of);
 
 }  // namespace

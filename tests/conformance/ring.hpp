@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <ostream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,6 +22,8 @@ struct Pair {
   std::string writer;
   std::string reader;
 };
+
+inline void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.writer << " to " << pair.reader; }
 
 inline std::string name_of(const ::testing::TestParamInfo<Pair>& pair) {
   return pair.param.writer == pair.param.reader ? pair.param.writer : pair.param.writer + "_to_" + pair.param.reader;

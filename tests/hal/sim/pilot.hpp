@@ -20,7 +20,7 @@ class Pilot {
 
   robot::Vector3 goal;                            // for M
   robot::Vector3 goal_velocity = robot::Vector3::Zero();
-  robot::Vector3 extra_force = robot::Vector3::Zero();  // feed-forward, world axes
+  double integral_gain = 4;                       // of position; of attitude twice that
   ActuatorFrame frame;                            // latches and joints are the test's to set
 
   /// Once per 2 ms.
@@ -33,13 +33,13 @@ class Pilot {
     const robot::Vector3 error = goal - x.p_WM_m;
     integral_ += 0.002 * error;
     const robot::Vector3 force_W =
-        airframe.mass_kg * (20 * error + 8 * (goal_velocity - x.v_WM_m_s) + 4 * integral_ +
-                            robot::gravity_m_s2 * robot::Vector3::UnitZ()) + extra_force;
+        airframe.mass_kg * (20 * error + 8 * (goal_velocity - x.v_WM_m_s) + integral_gain * integral_ +
+                            robot::gravity_m_s2 * robot::Vector3::UnitZ());
     const robot::Vector3 turn = -robot::log_so3(R);
     turn_integral_ += 0.002 * turn;
     const robot::Matrix3 I = robot::composite_inertia(airframe, joint_rad);
     const robot::Vector3 moment_B =
-        I * (60 * (R.transpose() * turn) + 8 * (R.transpose() * turn_integral_) - 14 * x.w_WM_M_rad_s);
+        I * (60 * (R.transpose() * turn) + 2 * integral_gain * (R.transpose() * turn_integral_) - 14 * x.w_WM_M_rad_s);
     allocate(R.transpose() * force_W, moment_B, robot::com_offset_B(airframe, joint_rad));
     world_.actuate(module_, frame);
   }

@@ -11,6 +11,7 @@
 #include "core/bus/vendors/cyclonedds/domain.hpp"
 #include "core/bus/vendors/cyclonedds/vendor.hpp"
 #include "core/bus/vendors/instance_set.hpp"
+#include "core/bus/vendors/reannouncer.hpp"
 
 namespace eciton::bus::cyclonedds {
 
@@ -58,6 +59,15 @@ struct eciton_participant {
   std::string name;
   std::uint32_t domain_id;
   eciton::bus::cyclonedds::Entity participant;
+
+ private:
+  eciton_participant(eciton::bus::cyclonedds::SharedDomain&& in, const eciton_participant_config& config);
+  static void on_discovery(dds_entity_t reader, void* self);
+  void announce();
+
+  std::uint8_t announcement_ = 0;
+  eciton::bus::vendors::Reannouncer reannouncer_;
+  eciton::bus::cyclonedds::Entity discovery_;  // reader of the vendor's list of participants; first to go
 };
 
 struct eciton_writer {

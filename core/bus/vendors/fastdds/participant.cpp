@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <memory>
@@ -39,8 +40,8 @@ void set_discovery(rtps::BuiltinAttributes& builtin, const std::string& address,
   discovery.leaseDuration = milliseconds(lease_ms);
   discovery.leaseDuration_announcementperiod = milliseconds(lease_ms / 3);
   // A peer that starts at the same moment misses the first announcement: repeat it soon.
-  discovery.initial_announcements.count = 5;
-  discovery.initial_announcements.period = milliseconds(20);
+  discovery.initial_announcements.count = 12;
+  discovery.initial_announcements.period = milliseconds(40);
   if (peers.empty()) return;
   builtin.avoid_builtin_multicast = true;
   builtin.metatrafficUnicastLocatorList.push_back(locator(address));  // one given: no multicast one is added
@@ -84,9 +85,9 @@ Result<eciton_participant*> eciton_participant::create(const eciton_participant_
   const auto peers = eciton::bus::vendors::peer_addresses(config.peers, config.peer_count);
   if (!peers) return peers.error();
   ignore_environment();
-  auto created = std::make_unique<eciton_participant>();
+  std::unique_ptr<eciton_participant> created(new eciton_participant);
   created->participant = fast::DomainParticipantFactory::get_instance()->create_participant(
-      config.domain, participant_qos(config, *address, *peers));
+      config.domain, participant_qos(config, *address, *peers), created.get(), fast::StatusMask::none());
   if (created->participant == nullptr) {
     return Error{"participant \"" + std::string(config.name) + "\": Fast DDS cannot open domain " +
                  std::to_string(config.domain) + " on " + config.network_interface + " (" + *address +
@@ -102,9 +103,25 @@ Result<eciton_participant*> eciton_participant::create(const eciton_participant_
 }
 
 eciton_participant::~eciton_participant() {
+  reannouncer_.stop();
   if (participant == nullptr) return;
   participant->delete_contained_entities();
   fast::DomainParticipantFactory::get_instance()->delete_participant(participant);
+}
+
+void eciton_participant::on_participant_discovery(fast::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& found) {
+  if (found.status == rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT &&
+      found.info.m_VendorId == rtps::c_VendorId_eProsima) {
+    reannouncer_.discovered();
+  }
+}
+
+// A participant is announced when its QoS changes: user data is the part that means nothing to anyone.
+void eciton_participant::announce() {
+  if (participant == nullptr) return;
+  fast::DomainParticipantQos qos = participant->get_qos();
+  qos.user_data().data_vec({++announcement_});
+  participant->set_qos(qos);
 }
 
 std::string eciton_participant::label() const {

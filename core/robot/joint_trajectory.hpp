@@ -1,0 +1,49 @@
+// Joint goals and what becomes of them: quintics of least jerk, all joints of the chain leaving and arriving
+// together, slow enough for a rate limit. Control evaluates the same motion (core/robot/minimum_jerk.hpp) for
+// its feed-forward, from the same goal and start time.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/robot/minimum_jerk.hpp"
+#include "core/robot/joint_limits.hpp"
+
+namespace eciton::robot {
+
+struct JointTrajectoryConfig {
+  double rate_rad_s = 0.12;             // default of a goal; the contact forces of a morph grow with it
+  double acceleration_rad_s2_max = 0.5;
+  double tilt_rad_max = chain_tilt_rad_max;
+};
+
+/// Positions of the joints of a chain (or of one module), member by member. Real-time safe after
+/// construction; one thread. Times are seconds of any one clock.
+class JointTrajectory {
+ public:
+  explicit JointTrajectory(const Airframe& airframe, const JointTrajectoryConfig& config = {});
+
+  /// At rest at these positions; also tells how many joints there are and which member is the base.
+  void reset(std::span<const double> position_rad, std::size_t base);
+
+  /// Takes a goal, to be begun at `start_s` (now or later; until then the present motion goes on).
+  /// `rate_rad_s` 0: the default. A refusal changes nothing.
+  std::optional<LimitFault> go(std::span<const double> goal_rad, double rate_rad_s, double now_s, double start_s);
+  /// To rest as soon as the acceleration allows, then hold.
+  void stop(double now_s);
+
+  ScalarMotion at(std::size_t joint, double t_s) const;
+  void at(double t_s, std::span<ScalarMotion> out) const;
+  std::size_t size() const { return present_.size(); }
+  bool finished(double t_s) const;
+  double end_s() const;
+
+ private:
+  Airframe airframe_;
+  JointTrajectoryConfig config_;
+  std::size_t base_ = 0;
+  JointMotion present_, next_;
+  bool has_next_ = false;
+};
+
+}  // namespace eciton::robot

@@ -1,0 +1,127 @@
+// A service's small state in a file of the runtime directory, so that it goes on where it was after its process
+// died. The step only hands the state over; a thread of its own writes it.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "core/base/time.hpp"
+#include "core/bus/waker.hpp"
+
+namespace eciton::runtime {
+
+/// The file of a checkpoint: a header with version, size and checksum, then the bytes. Replaced whole, by
+/// renaming, so that a reader sees the old one or the new one.
+class CheckpointFile {
+ public:
+  CheckpointFile(std::filesystem::path file, std::uint32_t version, std::size_t size);
+
+  Status save(std::span<const std::byte> state) const;
+  /// True: filled in. False: there is no file. An error: a file of another version or size, or a damaged one.
+  Result<bool> load(std::span<std::byte> state) const;
+  const std::filesystem::path& path() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+  std::uint32_t version_;
+  std::size_t size_;
+};
+
+/// The bytes last put, from one thread to one other, neither waiting: three buffers, of which each thread has one
+/// and the third changes hands.
+class LatestBytes {
+ public:
+  explicit LatestBytes(std::size_t size);
+
+  /// One thread; real-time safe.
+  void put(std::span<const std::byte> bytes) noexcept;
+  /// Another thread: what was put since the last call; nothing, if nothing was. Valid until the next call.
+  std::optional<std::span<const std::byte>> take() noexcept;
+
+ private:
+  static constexpr std::uint32_t fresh = 4;  // beside the number of the buffer in the middle
+
+  std::array<std::vector<std::byte>, 3> buffers_;
+  std::uint32_t back_ = 0;
+  std::atomic<std::uint32_t> middle_{1};
+  std::uint32_t front_ = 2;
+};
+
+/// Writes what is put, at most once in `interval`, and the last of it before it ends.
+class CheckpointWriter {
+ public:
+  CheckpointWriter(CheckpointFile file, std::size_t size, Duration interval);
+  ~CheckpointWriter();
+  CheckpointWriter(const CheckpointWriter&) = delete;
+  CheckpointWriter& operator=(const CheckpointWriter&) = delete;
+
+  /// One thread; real-time safe.
+  void put(std::span<const std::byte> state) noexcept;
+  std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
+  std::uint64_t failed() const { return failed_.load(std::memory_order_relaxed); }
+
+ private:
+  void run();
+  void save_latest();
+
+  CheckpointFile file_;
+  LatestBytes latest_;
+  Duration interval_;
+  bus::Waker put_;
+  std::atomic<bool> ending_{false};
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  std::atomic<std::uint64_t> written_{0};
+  std::atomic<std::uint64_t> failed_{0};
+  std::thread thread_;
+};
+
+/// `version` changes with the meaning of State; a file of another version is not read.
+template <class State>
+class Checkpoint {
+  static_assert(std::is_trivially_copyable_v<State>);
+
+ public:
+  Checkpoint(const std::filesystem::path& file, std::uint32_t version,
+             Duration interval = std::chrono::milliseconds(50))
+      : file_(file, version, sizeof(State)), interval_(interval) {}
+
+  /// At the start, before the first put. Nothing: no file, the process starts anew. An error is for a warning: it
+  /// starts anew too.
+  Result<std::optional<State>> load() const {
+    std::array<std::byte, sizeof(State)> bytes;
+    const auto found = file_.load(bytes);
+    if (!found) return found.error();
+    std::optional<State> state;
+    if (*found) std::memcpy(&state.emplace(), bytes.data(), bytes.size());
+    return state;
+  }
+
+  /// Starts the thread that writes; before the service is active.
+  void start() { writer_ = std::make_unique<CheckpointWriter>(file_, sizeof(State), interval_); }
+  /// From the step, one thread; real-time safe. Without effect before start.
+  void put(const State& state) noexcept {
+    if (writer_) writer_->put(std::as_bytes(std::span(&state, 1)));
+  }
+  const CheckpointWriter* writer() const { return writer_.get(); }
+
+ private:
+  CheckpointFile file_;
+  Duration interval_;
+  std::unique_ptr<CheckpointWriter> writer_;
+};
+
+}  // namespace eciton::runtime

@@ -1,0 +1,49 @@
+// Contact wrenches between the members of a chain from the external wrenches they share, (8) to (10) of
+// LEGION with a consistent common disturbance: then the constrained least-squares solution is a running sum
+// that every member does by itself. All wrenches in world axes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "core/robot/airframe.hpp"
+#include "core/robot/freshness.hpp"
+
+namespace eciton::estimation {
+
+/// What one member shares, or shared last. Members stand in the order of the chain.
+struct MemberWrench {
+  bool known = false;      // heard of since the chain formed
+  double age_s = 0;
+  robot::Wrench external_W;  // about r
+  robot::Vector3 r_W = robot::Vector3::Zero();              // composite centre of mass
+  robot::Vector3 port_to_next_W = robot::Vector3::Zero();   // docking point towards the next member (male)
+  robot::Vector3 port_to_last_W = robot::Vector3::Zero();   // towards the one before (female)
+};
+
+struct MemberContact {
+  robot::Wrench d_W;        // external less common wrench, about r
+  robot::Vector3 link_W = robot::Vector3::Zero();  // P to the next member: midway between what both say
+  robot::Wrench contact_W;  // of this member on the next, about P; zero for the last one
+  double freshness = 0;
+};
+
+struct ContactWrenches {
+  std::size_t count = 0;
+  std::array<MemberContact, robot::members_max> members{};
+  robot::Wrench common_W;   // disturbance common to all, about mean_r_W
+  robot::Vector3 mean_r_W = robot::Vector3::Zero();
+  std::size_t fresh = 0;    // members that count fully
+  bool complete = false;    // every member known: else all wrenches here are zero
+};
+
+/// Rule for silent members: a member's last wrench is held and its *difference from the common one* fades
+/// with its age, so that a silent member ends up as one that feels no contact, and what the others feel still
+/// adds up to nothing. With weights f_k (1 while fresh):
+///   D_F = sum f_k F_k / sum f_k,   D_M = sum f_k [M_k + (r_k - r_mean) x (F_k - D_F)] / sum f_k about r_mean,
+///   d_k = f_k (W_k - D),           c_k = -X(r_mean - P_k) sum_{j<=k} X(r_j - r_mean) d_j.
+/// Real-time safe, pure; at most members_max members are looked at.
+ContactWrenches contact_wrenches(std::span<const MemberWrench> members, const robot::FreshnessConfig& config = {});
+
+}  // namespace eciton::estimation

@@ -1,0 +1,67 @@
+// Moves this module's dock joints: in a chain as the chain's morph goals say, apart back to zero.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/base/config.hpp"
+#include "core/bus/participant.hpp"
+#include "core/robot/joint_trajectory.hpp"
+#include "core/runtime/service.hpp"
+#include "idl/topics.hpp"
+
+namespace eciton::joints {
+
+struct JointsConfig {
+  std::uint32_t module_id = 0;
+  double rate_Hz = 100;
+
+  template <class V>
+  void visit_fields(V& v) {
+    v("rate_Hz", rate_Hz, in_range(10, 500));
+  }
+};
+
+class JointsService final : public runtime::Service {
+ public:
+  JointsService(bus::Participant& ring, const JointsConfig& config, const robot::Airframe& airframe);
+
+  std::string_view name() const override { return "joints"; }
+  runtime::Schedule schedule() override {
+    return runtime::every(from_s(1 / config_.rate_Hz), runtime::Phase::coordinate);
+  }
+  void step(TimePoint now) noexcept override;
+
+ private:
+  double seconds(TimePoint t) const { return to_s(t - epoch_); }
+  void take_joints(TimePoint now) noexcept;
+  void take_chain(TimePoint now) noexcept;
+  void enter_chain(TimePoint now) noexcept;
+  void straighten(TimePoint now) noexcept;
+  void take_goals(TimePoint now) noexcept;
+  void write(TimePoint now) noexcept;
+  void answer(const msg::MorphGoal& goal, msg::GoalPhase phase, std::string_view reason, TimePoint now) noexcept;
+
+  JointsConfig config_;
+  robot::Airframe airframe_;
+  robot::JointTrajectory trajectory_;  // in a chain of all members' joints, apart of our own
+  std::size_t place_ = 0;              // ours in it
+  bool measured_ = false;              // our own positions are known: nothing is commanded before
+  bool in_chain_ = false;
+  TimePoint epoch_{};
+  bool first_step_ = true;
+  msg::ChainView view_;                // the active one
+  std::array<msg::JointState, robot::members_max> heard_{};  // peers' joints
+  msg::JointState own_;
+  msg::MorphGoal goal_;
+  bool goal_pending_ = false;
+  std::uint64_t answered_ = 0;
+
+  bus::Reader<msg::MorphGoal> morph_goal_;
+  bus::Reader<msg::ChainView> chain_view_;
+  bus::Reader<msg::JointState> joint_state_;
+  bus::Writer<msg::JointCommand> joint_command_;
+  bus::Writer<msg::GoalStatus> goal_status_;
+};
+
+}  // namespace eciton::joints
