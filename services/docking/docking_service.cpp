@@ -313,10 +313,16 @@ void DockingService::be_target(TimePoint now, double dt_s) noexcept {
   if (!is_target_) {
     for (const Module& m : modules_) {
       const msg::DockingState& d = m.docking;
-      const bool courts_us = m.id != 0 && d.role == msg::DockingRole::follower && d.peer_id == config_.module_id &&
-                             d.phase != msg::DockingPhase::idle && d.phase != msg::DockingPhase::docked &&
-                             is_fresh(m, now);
-      if (!courts_us || d.peer_port >= airframe_.ports.size()) continue;
+      if (m.id == 0 || d.role != msg::DockingRole::follower || d.peer_id != config_.module_id || !is_fresh(m, now) ||
+          d.peer_port >= airframe_.ports.size()) {
+        continue;
+      }
+      // Coming, or asking to be let go while our latch still holds; not on its way out.
+      const bool comes = d.phase == msg::DockingPhase::align || d.phase == msg::DockingPhase::approach ||
+                         d.phase == msg::DockingPhase::assembly || d.phase == msg::DockingPhase::recover;
+      const bool asks_to_go = d.phase == msg::DockingPhase::release &&
+                              membership_.latch(d.peer_port) == chain::LatchStatus::latched;
+      if (!comes && !asks_to_go) continue;
       pairing_ = {m.id, d.peer_port, d.port};
       membership_.expect(pairing_.port, pairing_.peer, pairing_.peer_port);
       target_.accept();
