@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "core/robot/actuator_lag.hpp"
 #include "core/robot/attitude_filter.hpp"
 #include "core/robot/chain_trajectory.hpp"
 #include "core/robot/joint_trajectory.hpp"
