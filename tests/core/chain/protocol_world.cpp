@@ -256,7 +256,7 @@ WorldResult World::run() {
       if ((now_ / tick + k) % (broadcast_period / tick) == 0) broadcast(k);
     }
     note_disturbances();
-    watch_convergence();
+    if (now_ % 50ms == Duration{}) watch_convergence();
     slot_ = (slot_ + 1) % in_flight_.size();
   }
   return result_;
