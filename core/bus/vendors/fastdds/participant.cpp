@@ -116,12 +116,8 @@ void eciton_participant::on_participant_discovery(fast::DomainParticipant*, rtps
   }
 }
 
-// A participant is announced when its QoS changes: user data is the part that means nothing to anyone.
 void eciton_participant::announce() {
-  if (participant == nullptr) return;
-  fast::DomainParticipantQos qos = participant->get_qos();
-  qos.user_data().data_vec({++announcement_});
-  participant->set_qos(qos);
+  if (participant != nullptr) eciton::bus::fastdds::announce(*participant);
 }
 
 std::string eciton_participant::label() const {
