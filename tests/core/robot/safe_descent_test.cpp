@@ -30,8 +30,10 @@ struct Body {
     specific_force_B = R.transpose() * (a + Vector3(0, 0, gravity_m_s2));
     p += v * dt;
     const Matrix3& I = airframe.I_B_kg_m2;
-    if (!standing) w += I.inverse() * (made.moment - w.cross(I * w)) * dt;
-    else w.setZero();
+    if (!standing)
+      w += I.inverse() * (made.moment - w.cross(I * w)) * dt;
+    else
+      w.setZero();
     R = R * exp_so3(w * dt);
   }
 };

@@ -40,8 +40,8 @@ void set_discovery(rtps::BuiltinAttributes& builtin, const std::string& address,
   discovery.leaseDuration = milliseconds(lease_ms);
   discovery.leaseDuration_announcementperiod = milliseconds(lease_ms / 3);
   // A peer that starts at the same moment misses the first announcement: repeat it soon.
-  discovery.initial_announcements.count = 12;
-  discovery.initial_announcements.period = milliseconds(40);
+  discovery.initial_announcements.count = 3;
+  discovery.initial_announcements.period = milliseconds(30);
   if (peers.empty()) return;
   builtin.avoid_builtin_multicast = true;
   builtin.metatrafficUnicastLocatorList.push_back(locator(address));  // one given: no multicast one is added
