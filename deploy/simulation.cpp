@@ -111,9 +111,7 @@ void Simulation::add_module(std::uint32_t id) {
   set_identity(config);
   auto module = std::make_unique<SimulatedModule>(config, *world_, start_);
   static_cast<WiredWorld&>(*wired_).connect(module->link);
-  module->devices.for_each([](hal::Device& device) { ok_or_throw(device.configure()); });
-  ok_or_throw(module->devices.joints->activate());
-  for (auto& latch : module->devices.latches) ok_or_throw(latch->activate());
+  bring_up(module->devices);
   runtime::SimModule& runs =
       executor_->add_module({.module_id = id, .process = config.name}, {&module->ring, &module->swarm});
   runs.add(module->sense);

@@ -62,8 +62,8 @@ class Simulation {
   TimePoint start_;
   std::unique_ptr<hal::sim::World> world_;
   std::unique_ptr<runtime::Plant> wired_;  // the world with every module's board
-  std::unique_ptr<runtime::SimExecutor> executor_;
   std::vector<std::unique_ptr<SimulatedModule>> modules_;
+  std::unique_ptr<runtime::SimExecutor> executor_;
   std::unique_ptr<bus::Participant> operators_;
 };
 

@@ -15,7 +15,7 @@ namespace eciton::hal::sim {
 
 struct ServerConfig {
   std::string path;                    // of the socket; must not exist yet
-  std::vector<std::uint32_t> modules;  // that have a host; empty: all of the world
+  std::vector<std::uint32_t> modules = {};  // that have a host; empty: all of the world
   Pace pace = Pace::lockstep;
   Duration tick = 2ms;
   Duration stall_timeout = 10s;        // lockstep: for one tick's answers

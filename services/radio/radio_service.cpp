@@ -56,8 +56,8 @@ RadioService::RadioService(bus::Participant& ring, bus::Participant& swarm, cons
   });
   beacon_.module_id = config.module_id;
   beacon_.incarnation = config.incarnation;
-  beacon_.name = config.name;
-  beacon_.airframe = config.airframe;
+  beacon_.name.assign(config.name);
+  beacon_.airframe.assign(config.airframe);
 }
 
 RadioService::~RadioService() = default;
