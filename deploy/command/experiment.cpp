@@ -78,7 +78,7 @@ int run(const Options& options) {
   std::printf("%s, seed %llu, simulated clock, %.1f s of wall clock in %u processes\n",
               options.experiment->name.c_str(), static_cast<unsigned long long>(options.seed), wall_s, options.jobs);
   for (const auto& [name, value] : figures.metrics) std::printf("  %-28s %.6g\n", name.c_str(), value);
-  ok_or_throw(write_measurement(options.json, make_measurement(options, config, figures)));
+  if (!options.json.empty()) ok_or_throw(write_measurement(options.json, make_measurement(options, config, figures)));
   return 0;
 }
 

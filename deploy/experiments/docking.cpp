@@ -11,6 +11,7 @@ namespace {
 constexpr std::uint32_t target = 1, follower = 2;
 constexpr double height_m = 1.5;
 constexpr double module_length_m = 0.806;  // docking point to docking point
+constexpr double ask_limit_s = 30;
 constexpr double dock_limit_s = 45;
 constexpr double held_s = 1.0;             // a latch that lets go again was none
 
@@ -56,9 +57,16 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
            a->view->active_epoch == b->view->active_epoch;
   };
   const double began_s = simulation.elapsed_s();
-  const std::uint64_t goal = pilot.op().dock(follower, target);
-  pilot.wait_until([&] { return pilot.op().report(goal)->progress >= GoalProgress::accepted; }, 10);
-  const bool accepted = pilot.op().report(goal)->progress == GoalProgress::accepted;
+  // Asked again while it is refused, as a person would: the clock runs from the accepted goal.
+  std::uint64_t goal = 0;
+  const auto answered = [&] { return pilot.op().report(goal)->progress >= GoalProgress::accepted; };
+  bool accepted = false;
+  while (!accepted && simulation.elapsed_s() < began_s + ask_limit_s) {
+    goal = pilot.op().dock(follower, target);
+    pilot.wait_until(answered, 5);
+    accepted = pilot.op().report(goal)->progress == GoalProgress::accepted;
+    if (!accepted) pilot.wait(1);
+  }
   const double accepted_s = accepted ? to_s(pilot.op().report(goal)->accepted_at - TimePoint{}) : began_s;
   const bool docked = accepted && pilot.wait_until([&] { return linked() && both_active(); }, dock_limit_s);
   const double time_s = to_s(simulation.now() - TimePoint{}) - accepted_s;
