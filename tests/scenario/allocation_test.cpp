@@ -16,6 +16,30 @@ void expect_no_allocation(Simulation& simulation, double duration_s, const char*
   EXPECT_EQ(guard.framework(), 0u) << when << "\n" << guard.describe();
 }
 
+/// What must not pass.
+class WastefulService final : public runtime::Service {
+ public:
+  std::string_view name() const override { return "wasteful"; }
+  runtime::Schedule schedule() override { return runtime::every(from_s(0.01), runtime::Phase::coordinate); }
+  void step(TimePoint now) noexcept override { kept_ = std::vector<double>(1 + static_cast<std::size_t>(to_ns(now) % 7)); }
+
+ private:
+  std::vector<double> kept_;
+};
+
+TEST(StepAllocationTest, AServiceThatUsesTheHeapIsCaught) {
+  if (!testing::AllocationGuard::available()) GTEST_SKIP() << "a sanitizer brings its own heap";
+  Simulation simulation(row_of(1, 11));
+  WastefulService wasteful;
+  simulation.executor()
+      .add_module({.module_id = 1, .process = "wasteful", .heartbeat_period = Duration::zero()}, {&simulation.listener(0)})
+      .add(wasteful);
+  simulation.executor().run_until(simulation.now() + from_s(0.1));
+  testing::AllocationGuard guard;
+  simulation.executor().run_until(simulation.now() + from_s(0.2));
+  EXPECT_GT(guard.framework(), 0u);
+}
+
 TEST(StepAllocationTest, NoServiceUsesTheHeapInFlight) {
   if (!testing::AllocationGuard::available()) GTEST_SKIP() << "a sanitizer brings its own heap";
   Simulation simulation(row_of(2, 11));
