@@ -10,7 +10,7 @@
 #include "core/bus/plugin_loader.hpp"
 #include "deploy/module_config.hpp"
 #include "deploy/supervisor/module_plan.hpp"
-#include "hal/sim/world_config.hpp"
+#include "deploy/world_file.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -18,26 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char* origin = "--set";
 constexpr const char* mixed = "mixed";
-
-/// What eciton-world reads.
-struct WorldFile {
-  std::string socket;
-  std::string pace = "lockstep";
-  double tick_s = 0.002;
-  bool truth = true;
-  std::string dds;
-  hal::sim::WorldConfig world;
-
-  template <class V>
-  void visit_fields(V& v) {
-    v("socket", socket);
-    v("pace", pace, one_of({"lockstep", "wall"}));
-    v("tick_s", tick_s, in_range(0.001, 0.01));
-    v("truth", truth);
-    v("dds", dds);
-    v("world", world);
-  }
-};
 
 std::string key_of(const std::string& assignment) { return assignment.substr(0, assignment.find('=')); }
 

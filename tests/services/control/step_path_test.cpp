@@ -3,16 +3,18 @@
 
 #include <array>
 
+#include "core/robot/actuator_lag.hpp"
+#include "core/robot/attitude_filter.hpp"
 #include "core/robot/chain_trajectory.hpp"
+#include "core/robot/joint_trajectory.hpp"
+#include "core/robot/safe_descent.hpp"
 #include "services/control/contact_wrench_law.hpp"
 #include "services/control/disturbance_feedback.hpp"
-#include "services/control/failsafe.hpp"
 #include "services/control/pose_control.hpp"
 #include "services/estimation/contact_wrench.hpp"
 #include "services/estimation/error_state_filter.hpp"
 #include "services/estimation/momentum_observer.hpp"
 #include "services/estimation/zeroing.hpp"
-#include "services/joints/joint_trajectory.hpp"
 #include "tests/allocation_guard/allocation_guard.hpp"
 
 namespace eciton {
@@ -54,12 +56,13 @@ TEST(StepPathTest, ControlAllocatesNothing) {
   robot::ActuatorLag lag(airframe);
   control::ContactWrenchLaw law;
   control::DisturbanceFeedback feedback;
-  control::Failsafe failsafe({}, airframe.mass_kg, airframe.I_B_kg_m2);
+  robot::AttitudeFilter attitude;
+  robot::SafeDescent descent({}, airframe.mass_kg, airframe.I_B_kg_m2);
   std::array<control::ChainMember, 16> chain;
   std::array<robot::PoseReference, 16> references;
   std::array<robot::ScalarMotion, 32> joints;
   const std::array<robot::Pose, 3> waypoints{robot::Pose{}, {Vector3(1, 0, 0), Matrix3::Identity()}, {}};
-  failsafe.start(false, {});
+  descent.start(robot::SafeManoeuvre::hold_then_level, Matrix3::Identity(), 0, {});
   testing::AllocationGuard guard;
   for (int k = 0; k < 100; ++k) {
     const double t = k * 0.002;
@@ -73,15 +76,15 @@ TEST(StepPathTest, ControlAllocatesNothing) {
     in.feed_forward_W = law.update(chain, 3, {}, 0.01) + feedback.update({}, control::FeedbackPhase::follow, 0.002);
     const robot::Allocation rotors = allocator.update(pose_control.update(in, 0.002), Vector3::Zero());
     lag.update(rotors.outputs(), 0.002);
-    failsafe.imu(Vector3::Zero(), {0, 0, 9.81}, 0.002);
-    failsafe.update(0.002);
+    attitude.update(Vector3::Zero(), {0, 0, 9.81}, 0.002);
+    descent.update(attitude.R_WB(), attitude.w_WB_B(), {0, 0, 9.81}, 0.002);
   }
   EXPECT_EQ(guard.framework(), 0u) << guard.describe();
 }
 
 TEST(StepPathTest, JointGoalsAllocateNothingEvenWhenRefused) {
   if (!testing::AllocationGuard::available()) GTEST_SKIP();
-  joints::JointTrajectory trajectory(robot::legion());
+  robot::JointTrajectory trajectory(robot::legion());
   std::array<double, 32> goal{};
   testing::AllocationGuard guard;
   trajectory.reset(goal, 7);
