@@ -61,6 +61,7 @@ struct Simulation::SimulatedModule {
   hal::SenseService sense;
   hal::ActService act;
   std::vector<std::unique_ptr<runtime::Service>> services;
+  runtime::SimModule* runs = nullptr;
 };
 
 Simulation::Simulation(const SimulationConfig& config) : config_(config) {
@@ -117,7 +118,14 @@ void Simulation::add_module(std::uint32_t id) {
   runs.add(module->sense);
   for (auto& service : module->services) runs.add(*service);
   runs.add(module->act);
+  module->runs = &runs;
   modules_.push_back(std::move(module));
+}
+
+void Simulation::suspend(std::size_t module, const std::string& service) {
+  for (const auto& candidate : modules_[module]->services) {
+    if (candidate->name() == service) modules_[module]->runs->suspend(*candidate, true);
+  }
 }
 
 bus::Participant& Simulation::listener(std::size_t module) { return *modules_[module]->listener; }

@@ -59,8 +59,9 @@ TEST(WorldAirTest, ModuleUnderAnotherIsPushedDown) {
   WorldConfig config = still_world();
   config.wakes = true;
   const auto fall = [&](double x_m) {
-    World world(config, robot::legion(),
-                {{.id = 1, .p_WB_m = {0, 0, 4}, .hovering = true}, {.id = 2, .p_WB_m = {x_m, 0, 3}, .hovering = true}});
+    World world(
+        config, robot::legion(),
+        {{.id = 1, .p_WB_m = {0, 0, 4}, .hovering = true}, {.id = 2, .p_WB_m = {x_m, 0, 3}, .hovering = true}});
     world.advance(at_ms(200));
     return world.truth_pose(2).v_WB_m_s.z();
   };
@@ -121,7 +122,8 @@ TEST(MismatchTest, LeavesEveryBodyPhysicallyPossible) {
   const robot::Airframe airframe = robot::legion();
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     const Mismatch m = draw_mismatch(airframe, Random(seed, 1, Purpose::mismatch));
-    const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(true_inertia(airframe, m).I_body_kg_m2).eigenvalues();
+    const Vector3 moments =
+        Eigen::SelfAdjointEigenSolver<Matrix3>(true_inertia(airframe, m).I_body_kg_m2).eigenvalues();
     EXPECT_GT(moments[0], 0);
     EXPECT_GT(moments[0] + moments[1], moments[2]) << "seed " << seed;
   }

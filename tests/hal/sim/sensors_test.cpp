@@ -77,8 +77,9 @@ TEST(ImuSensorTest, HasTheNoiseAndRateThatItsConfigSays) {
   // Negative control: the same check must not accept noise half as large.
   ImuConfig quieter = config;
   quieter.accelerometer_noise_m_s2 /= 2;
-  EXPECT_GT(std::abs(imu_statistics(quieter, {1, 2, 9.81}, {0, 0, 0})[0].deviation() - config.accelerometer_noise_m_s2),
-            0.03 * config.accelerometer_noise_m_s2);
+  EXPECT_GT(
+      std::abs(imu_statistics(quieter, {1, 2, 9.81}, {0, 0, 0})[0].deviation() - config.accelerometer_noise_m_s2),
+      0.03 * config.accelerometer_noise_m_s2);
 }
 
 TEST(ImuSensorTest, AveragesTheForceOverItsPeriod) {

@@ -17,7 +17,8 @@ namespace {
 std::string socket_path() {
   static int count = 0;
   return (std::filesystem::temp_directory_path() /
-          ("eciton_sim_" + std::to_string(::getpid()) + "_" + std::to_string(count++))).string();
+          ("eciton_sim_" + std::to_string(::getpid()) + "_" + std::to_string(count++)))
+      .string();
 }
 
 std::vector<ModuleStart> two_modules() {
