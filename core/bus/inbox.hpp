@@ -11,11 +11,10 @@
 
 namespace eciton::bus {
 
-/// Every sample that arrived is in exactly one of delivered, filtered, replaced, or a dropped_* count, or queued.
+/// Every sample that arrived is in exactly one of delivered, replaced, or a dropped_* count, or queued.
 struct ReaderStatistics {
   std::uint64_t received = 0;
   std::uint64_t delivered = 0;
-  std::uint64_t filtered = 0;           // of a module the reader was told not to hear
   std::uint64_t replaced = 0;           // by a newer one of its key before it was taken: keep last
   std::uint64_t dropped_malformed = 0;  // not a well-formed sample of the type
   std::uint64_t dropped_late = 0;       // a newer one of its key had been delivered (sensor class)
@@ -48,12 +47,6 @@ class Inbox {
       ++statistics.dropped_malformed;
       return nullptr;
     }
-    if constexpr (requires { slot.value.module_id; }) {
-      if (only_module_ && slot.value.module_id != *only_module_) {
-        ++statistics.filtered;
-        return nullptr;
-      }
-    }
     slot.key = key_hash(slot.value);
     if (ordered_ && !is_newest(slot)) {
       ++statistics.dropped_late;
@@ -72,7 +65,6 @@ class Inbox {
     return &slot.value;
   }
 
-  void accept_only(std::uint32_t module_id) { only_module_ = module_id; }
   bool empty() const { return count_ == 0; }
 
   /// The oldest queued sample, valid until the next push; nullptr: none.
@@ -113,7 +105,6 @@ class Inbox {
 
   std::size_t keep_last_;
   bool ordered_;
-  std::optional<std::uint32_t> only_module_;
   std::vector<Slot> slots_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;

@@ -93,7 +93,7 @@ bool ServiceGroup::due(Entry& entry, Pace at) noexcept {
   if (entry.triggered()) {
     bus::ReaderCore& trigger = *entry.schedule.trigger;
     trigger.fetch();
-    if (trigger.has_sample() && trigger.statistics().received != entry.received) return true;
+    if (trigger.has_sample() && trigger.news() != entry.news) return true;
   }
   return at >= entry.next_due;
 }
@@ -102,8 +102,9 @@ Pace ServiceGroup::step(Entry& entry, Pace at, TimePoint now) noexcept {
   for (bus::Participant* participant : participants_) participant->set_now(now);
   bool sampled = false;
   if (entry.triggered()) {
-    sampled = entry.schedule.trigger->has_sample();
-    entry.received = entry.schedule.trigger->statistics().received;
+    const bus::ReaderCore& trigger = *entry.schedule.trigger;
+    sampled = trigger.has_sample() && trigger.news() != entry.news;
+    entry.news = trigger.news();
   }
   const bool measured = pacing_ != Pacing::simulated;
   const Duration before = measured ? monotonic_now() : Duration::zero();
@@ -114,6 +115,8 @@ Pace ServiceGroup::step(Entry& entry, Pace at, TimePoint now) noexcept {
     if (!sampled) entry.statistics.count_timeout();
     if (pacing_ == Pacing::wall_clock && execution > entry.schedule.at_most) entry.statistics.count_overruns(1);
     entry.next_due = at + entry.schedule.at_most;
+    // Samples that come as often as at_most asks, give or take, are not preceded by time-outs.
+    if (sampled && pacing_ == Pacing::wall_clock) entry.next_due += entry.schedule.at_most / 4;
   } else {
     const Duration period = entry.schedule.period;
     const std::int64_t skipped = std::max(at - entry.next_due, Duration::zero()) / period;

@@ -33,9 +33,9 @@ class ServiceGroup {
   struct Entry {
     Service* service;
     Schedule schedule;
-    Pace next_due{};             // the next step of a periodic service; when a triggered one has waited long enough
-    std::uint64_t received = 0;  // by its trigger, when it last stepped
-    bool suspended = false;      // neither steps nor beats: a hang, for tests of failures
+    Pace next_due{};         // the next step of a periodic service; when a triggered one has waited long enough
+    std::uint64_t news = 0;  // of its trigger, when it last stepped
+    bool suspended = false;  // neither steps nor beats: a hang, for tests of failures
     CycleStatistics statistics;
     msg::Heartbeat heartbeat;  // what does not change is filled in
 
