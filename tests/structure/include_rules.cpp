@@ -185,6 +185,7 @@ class Checker {
 
   void check_ours(const std::string& header) {
     if (rule_ == nullptr) return;
+    if (given_the_time() && header == "core/base/wall_clock.hpp") report("may not include " + header + no_clock);
     if (!any_matches(header, allowed_)) {
       report("may not include " + header + "; allowed here: " + joined(allowed_));
     }
@@ -208,13 +209,14 @@ class Checker {
   }
 
   void check_clock(const std::string& text) {
-    const bool given_the_time =
-        begins_with(file_, "services/") || begins_with(file_, "core/robot/") || begins_with(file_, "core/chain/");
-    if (given_the_time && text.find("_clock::now") != std::string::npos) {
-      report("asks a clock: it is given the time");
-    }
+    if (given_the_time() && text.find("_clock::now") != std::string::npos) report("asks a clock" + no_clock);
   }
 
+  bool given_the_time() const {
+    return begins_with(file_, "services/") || begins_with(file_, "core/robot/") || begins_with(file_, "core/chain/");
+  }
+
+  const std::string no_clock = ": this code is given the time";
   fs::path root_;
   std::string file_;
   int line_ = 0;

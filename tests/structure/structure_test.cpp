@@ -80,6 +80,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"MathsAsksAClock", "services/control/a.cpp", "auto t = std::chrono::steady_clock::now();"},
         Case{"ServiceAsksAClock", "services/control/control_service.cpp",
              "auto t = std::chrono::system_clock::now();"},
+        Case{"ServiceIncludesTheClock", "services/control/control_service.cpp",
+             "#include \"core/base/wall_clock.hpp\""},
         Case{"ServiceKnowsAnother", "services/control/control_service.cpp",
              "#include \"services/estimation/observer.hpp\""},
         Case{"ServiceKnowsHardware", "services/joints/joints_service.cpp", "#include \"hal/interfaces.hpp\""},
