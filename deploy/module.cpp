@@ -5,6 +5,12 @@ namespace eciton::deploy {
 
 robot::Airframe make_airframe(const ModuleConfig& config) { return robot::legion(config.airframe == "legion-lidar"); }
 
+void bring_up(hal::Devices& devices) {
+  devices.for_each([](hal::Device& device) { ok_or_throw(device.configure()); });
+  ok_or_throw(devices.joints->activate());
+  for (auto& latch : devices.latches) ok_or_throw(latch->activate());
+}
+
 std::uint64_t incarnation_at(TimePoint start) { return static_cast<std::uint64_t>(to_ns(start)) + 1; }
 
 std::unique_ptr<runtime::Service> make_service(const std::string& name, const ModuleConfig& config,

@@ -17,6 +17,9 @@ robot::Airframe make_airframe(const ModuleConfig& config);
 std::unique_ptr<runtime::Service> make_service(const std::string& name, const ModuleConfig& config,
                                                bus::Participant& ring, bus::Participant* swarm);
 
+/// Configures all devices and powers what may always be powered: joints and latches, not rotors. Throws BadInput.
+void bring_up(hal::Devices& devices);
+
 /// Larger at every start of the module: the wall clock, unless simulated time says otherwise.
 std::uint64_t incarnation_at(TimePoint start);
 

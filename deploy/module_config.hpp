@@ -52,7 +52,7 @@ struct ModuleConfig {
   std::string dds = "cyclonedds";          // vendor of every process ...
   std::map<std::string, std::string> vendors;  // ... but of these: process name -> vendor
   RingConfig module_ring;                  // domain 0: 10 + id
-  RingConfig swarm_ring{.domain = 1};
+  RingConfig swarm_ring{1, "lo", {}};
   double lease_s = 3;
   int realtime_priority = 0;               // SCHED_FIFO; 0: leave it
   HardwareConfig hal;

@@ -61,6 +61,7 @@ struct Simulation::SimulatedModule {
   hal::SenseService sense;
   hal::ActService act;
   std::vector<std::unique_ptr<runtime::Service>> services;
+  runtime::SimModule* runs = nullptr;
 };
 
 Simulation::Simulation(const SimulationConfig& config) : config_(config) {
@@ -111,15 +112,20 @@ void Simulation::add_module(std::uint32_t id) {
   set_identity(config);
   auto module = std::make_unique<SimulatedModule>(config, *world_, start_);
   static_cast<WiredWorld&>(*wired_).connect(module->link);
-  module->devices.for_each([](hal::Device& device) { ok_or_throw(device.configure()); });
-  ok_or_throw(module->devices.joints->activate());
-  for (auto& latch : module->devices.latches) ok_or_throw(latch->activate());
+  bring_up(module->devices);
   runtime::SimModule& runs =
       executor_->add_module({.module_id = id, .process = config.name}, {&module->ring, &module->swarm});
   runs.add(module->sense);
   for (auto& service : module->services) runs.add(*service);
   runs.add(module->act);
+  module->runs = &runs;
   modules_.push_back(std::move(module));
+}
+
+void Simulation::suspend(std::size_t module, const std::string& service) {
+  for (const auto& candidate : modules_[module]->services) {
+    if (candidate->name() == service) modules_[module]->runs->suspend(*candidate, true);
+  }
 }
 
 bus::Participant& Simulation::listener(std::size_t module) { return *modules_[module]->listener; }

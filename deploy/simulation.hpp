@@ -49,8 +49,11 @@ class Simulation {
   bus::Participant& operators() { return *operators_; }
   /// A participant that listens on a module's ring and writes nothing: what the services believe.
   bus::Participant& listener(std::size_t module);
+  /// As if a service's process hung: it steps no more.
+  void suspend(std::size_t module, const std::string& service);
   bus::sim_network::Network& swarm() { return bus::sim_network::Network::of(config_.module.swarm_ring.domain); }
-  std::size_t size() const { return modules_.size(); }
+  std::size_t size() const { return config_.world.modules.size(); }
+  std::uint32_t id(std::size_t module) const { return config_.world.modules[module].id; }
   TimePoint now() const { return executor_->now(); }
   double elapsed_s() const { return to_s(now() - start_); }
 
@@ -62,8 +65,8 @@ class Simulation {
   TimePoint start_;
   std::unique_ptr<hal::sim::World> world_;
   std::unique_ptr<runtime::Plant> wired_;  // the world with every module's board
-  std::unique_ptr<runtime::SimExecutor> executor_;
   std::vector<std::unique_ptr<SimulatedModule>> modules_;
+  std::unique_ptr<runtime::SimExecutor> executor_;
   std::unique_ptr<bus::Participant> operators_;
 };
 

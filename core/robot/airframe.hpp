@@ -17,17 +17,17 @@ inline constexpr std::size_t members_max = 16;  // of one chain
 
 struct RotorGeometry {
   Vector3 p_BR_m;
-  double drag_ratio_m;      // drag torque / thrust, signed: positive for spin +
+  double drag_ratio_m;  // drag torque / thrust, signed: positive for spin +
   double thrust_N_min;
   double thrust_N_max;
-  double gimbal_rad_max;    // of phi and theta; 0: fixed, thrust along body z
+  double gimbal_rad_max;  // of phi and theta; 0: fixed, thrust along body z
   double gimbal_rate_rad_s_max;
 };
 
 /// A dock joint between the body and a dock link.
 struct JointGeometry {
   Vector3 p_BJ_m;
-  Vector3 axis_B;           // unit
+  Vector3 axis_B;  // unit
   double link_mass_kg;
   Vector3 p_JL_m;           // centre of mass of the link, joint at zero
   Matrix3 I_L_kg_m2;        // of the link about its centre of mass
@@ -41,15 +41,15 @@ enum class PortKind { male, female };
 /// A docking point, fixed on the link of one joint.
 struct PortGeometry {
   PortKind kind;
-  int joint;                // index into joints
-  Vector3 p_JP_m;           // joint at zero
-  Matrix3 R_JP;             // x out of a male port, into a female one: linked ports have equal axes
+  int joint;       // index into joints
+  Vector3 p_JP_m;  // joint at zero
+  Matrix3 R_JP;    // x out of a male port, into a female one: linked ports have equal axes
 };
 
 struct Airframe {
   std::string name;
-  double mass_kg;           // all of it, links included
-  Matrix3 I_B_kg_m2;        // of all of it about B's origin, joints at zero
+  double mass_kg;     // all of it, links included
+  Matrix3 I_B_kg_m2;  // of all of it about B's origin, joints at zero
   std::vector<RotorGeometry> rotors;
   std::vector<JointGeometry> joints;
   std::vector<PortGeometry> ports;

@@ -63,8 +63,7 @@ void choose_scales(const Airframe& airframe, double force_scale_min, const Thrus
 
 Vector3 thrust_vector_B(const RotorOutput& rotor) {
   const double phi = rotor.gimbal_rad[0], theta = rotor.gimbal_rad[1];
-  return rotor.thrust_N *
-         Vector3(std::sin(theta), -std::sin(phi) * std::cos(theta), std::cos(phi) * std::cos(theta));
+  return rotor.thrust_N * Vector3(std::sin(theta), -std::sin(phi) * std::cos(theta), std::cos(phi) * std::cos(theta));
 }
 
 RotorOutput rotor_output(const Vector3& thrust_B_N, const std::array<double, 2>& present_rad, double gimbal_rad_max) {
@@ -104,7 +103,8 @@ Vector6 Allocator::solve(const Matrix6& QQt, const Vector6& wrench) const {
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(QQt);
   const double smallest = 1e-9 * eigen.eigenvalues().maxCoeff();
   Vector6 in_axes = eigen.eigenvectors().transpose() * wrench;
-  for (int k = 0; k < 6; ++k) in_axes[k] = eigen.eigenvalues()[k] > smallest ? in_axes[k] / eigen.eigenvalues()[k] : 0;
+  for (int k = 0; k < 6; ++k)
+    in_axes[k] = eigen.eigenvalues()[k] > smallest ? in_axes[k] / eigen.eigenvalues()[k] : 0;
   return eigen.eigenvectors() * in_axes;
 }
 

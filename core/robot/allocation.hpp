@@ -38,8 +38,8 @@ struct AllocationConfig {
 struct Allocation {
   std::array<RotorOutput, rotors_max> rotors{};
   std::size_t rotor_count = 0;
-  Wrench achieved_B;        // what `rotors` really make, about the composite centre of mass
-  double force_scale = 1;   // share of the demanded force, and of the moment, that was asked of the rotors
+  Wrench achieved_B;       // what `rotors` really make, about the composite centre of mass
+  double force_scale = 1;  // share of the demanded force, and of the moment, that was asked of the rotors
   double moment_scale = 1;
   bool thrust_limited = false;  // some rotor at its least thrust, or at its greatest in spite of the scaling
   bool gimbal_limited = false;

@@ -39,8 +39,7 @@ FrameMotion body_to_port(const Airframe& airframe, int port, const FrameMotion& 
   const ScalarMotion& q = joints[static_cast<std::size_t>(p.joint)];
   const Matrix3 R_BL = Eigen::AngleAxisd(q.position, joint.axis_B).toRotationMatrix();
   const FrameMotion at_joint = fixed_at(body, body.R * joint.p_BJ_m, body.R);
-  const FrameMotion link =
-      across_joint(at_joint, body.R * joint.axis_B, body.R * R_BL, q.velocity, q.acceleration);
+  const FrameMotion link = across_joint(at_joint, body.R * joint.axis_B, body.R * R_BL, q.velocity, q.acceleration);
   return fixed_at(link, link.R * p.p_JP_m, link.R * p.R_JP);
 }
 
@@ -85,16 +84,24 @@ PoseReference composite_reference(const BodyMotion& body, const ComMotion& com) 
   const Vector3 v_B = turning + com.c_rate_B;
   const Vector3 a_B = body.alpha_WB_B.cross(com.c_B) + body.w_WB_B.cross(turning) +
                       2 * body.w_WB_B.cross(com.c_rate_B) + com.c_acceleration_B;
-  return {body.p_WB + body.R_WB * com.c_B, body.v_WB + body.R_WB * v_B, body.a_WB + body.R_WB * a_B,
-          body.R_WB, body.w_WB_B, body.alpha_WB_B};
+  return {body.p_WB + body.R_WB * com.c_B,
+          body.v_WB + body.R_WB * v_B,
+          body.a_WB + body.R_WB * a_B,
+          body.R_WB,
+          body.w_WB_B,
+          body.alpha_WB_B};
 }
 
 BodyMotion body_motion(const PoseReference& composite, const ComMotion& com) {
-  const BodyMotion origin{Vector3::Zero(),  Vector3::Zero(),    Vector3::Zero(),
-                          composite.R_WM, composite.w_WM_M, composite.alpha_WM_M};
+  const BodyMotion origin{Vector3::Zero(), Vector3::Zero(),  Vector3::Zero(),
+                          composite.R_WM,  composite.w_WM_M, composite.alpha_WM_M};
   const PoseReference offset = composite_reference(origin, com);
-  return {composite.p_WM - offset.p_WM, composite.v_WM - offset.v_WM, composite.a_WM - offset.a_WM,
-          composite.R_WM, composite.w_WM_M, composite.alpha_WM_M};
+  return {composite.p_WM - offset.p_WM,
+          composite.v_WM - offset.v_WM,
+          composite.a_WM - offset.a_WM,
+          composite.R_WM,
+          composite.w_WM_M,
+          composite.alpha_WM_M};
 }
 
 void chain_references(const Airframe& airframe, std::size_t base, const PoseReference& base_reference,

@@ -33,8 +33,16 @@ struct Wrench {
   Wrench operator-(const Wrench& o) const { return {force - o.force, moment - o.moment}; }
   Wrench operator-() const { return {-force, -moment}; }
   Wrench operator*(double s) const { return {force * s, moment * s}; }
-  Wrench& operator+=(const Wrench& o) { force += o.force; moment += o.moment; return *this; }
-  Wrench& operator-=(const Wrench& o) { force -= o.force; moment -= o.moment; return *this; }
+  Wrench& operator+=(const Wrench& o) {
+    force += o.force;
+    moment += o.moment;
+    return *this;
+  }
+  Wrench& operator-=(const Wrench& o) {
+    force -= o.force;
+    moment -= o.moment;
+    return *this;
+  }
 };
 
 inline Matrix3 skew(const Vector3& a) {

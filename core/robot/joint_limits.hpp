@@ -15,8 +15,8 @@ enum class LimitKind { count, not_finite, position, rate, chain_tilt };
 /// Why a goal is refused.
 struct LimitFault {
   LimitKind kind = LimitKind::position;
-  std::size_t member = 0;       // index in the chain
-  std::size_t joint = 0;        // index in the member
+  std::size_t member = 0;  // index in the chain
+  std::size_t joint = 0;   // index in the member
   double value = 0;
   double limit = 0;
 

@@ -6,7 +6,6 @@
 
 namespace eciton::robot {
 
-using ScalarMotion;
 
 JointTrajectory::JointTrajectory(const Airframe& airframe, const JointTrajectoryConfig& config)
     : airframe_(airframe), config_(config) {

@@ -59,18 +59,18 @@ Pose port_pose_B(const Airframe& airframe, int port, std::span<const double> joi
   return {joint.p_BJ_m + R * p.p_JP_m, R * p.R_JP};
 }
 
-void chain_poses(const Airframe& airframe, std::size_t base, const Pose& X_WB_base,
-                 std::span<const double> joint_rad, std::span<Pose> X_WB) {
+void chain_poses(const Airframe& airframe, std::size_t base, const Pose& X_WB_base, std::span<const double> joint_rad,
+                 std::span<Pose> X_WB) {
   const std::size_t n = airframe.joints.size();
   const auto joints_of = [&](std::size_t i) { return joint_rad.subspan(i * n, n); };
   X_WB[base] = X_WB_base;
   for (std::size_t i = base; i + 1 < X_WB.size(); ++i) {
-    X_WB[i + 1] = X_WB[i] * port_pose_B(airframe, 0, joints_of(i)) *
-                  port_pose_B(airframe, 1, joints_of(i + 1)).inverse();
+    X_WB[i + 1] =
+        X_WB[i] * port_pose_B(airframe, 0, joints_of(i)) * port_pose_B(airframe, 1, joints_of(i + 1)).inverse();
   }
   for (std::size_t i = base; i > 0; --i) {
-    X_WB[i - 1] = X_WB[i] * port_pose_B(airframe, 1, joints_of(i)) *
-                  port_pose_B(airframe, 0, joints_of(i - 1)).inverse();
+    X_WB[i - 1] =
+        X_WB[i] * port_pose_B(airframe, 1, joints_of(i)) * port_pose_B(airframe, 0, joints_of(i - 1)).inverse();
   }
 }
 

@@ -28,7 +28,7 @@ Pose port_pose_B(const Airframe& airframe, int port, std::span<const double> joi
 /// (16), LEGION: poses X_WB of the members of a chain, numbered from the one whose female port is free,
 /// from the pose of one of them. `joint_rad` holds the members' joints one after another.
 /// The male port 0 of member i coincides, axes included, with the female port 1 of member i+1.
-void chain_poses(const Airframe& airframe, std::size_t base, const Pose& X_WB_base,
-                 std::span<const double> joint_rad, std::span<Pose> X_WB);
+void chain_poses(const Airframe& airframe, std::size_t base, const Pose& X_WB_base, std::span<const double> joint_rad,
+                 std::span<Pose> X_WB);
 
 }  // namespace eciton::robot

@@ -9,8 +9,7 @@ namespace eciton::robot {
 Quintic::Quintic(const ScalarMotion& from, double goal, double duration_s) : duration_s_(std::max(duration_s, 0.0)) {
   const double T = duration_s_;
   const double d = goal - from.position, v = from.velocity * T, a = from.acceleration * T * T;
-  c_ = {from.position,           v, a / 2, 10 * d - 6 * v - 1.5 * a, -15 * d + 8 * v + 1.5 * a,
-        6 * d - 3 * v - 0.5 * a};
+  c_ = {from.position, v, a / 2, 10 * d - 6 * v - 1.5 * a, -15 * d + 8 * v + 1.5 * a, 6 * d - 3 * v - 0.5 * a};
   if (T <= 0) c_ = {goal, 0, 0, 0, 0, 0};
 }
 
@@ -87,8 +86,8 @@ void JointMotion::stop(std::span<const ScalarMotion> from, double start_s, doubl
   // A rest at p + v T/2 + a T^2/12 is where speed falls to zero without turning back.
   duration_s_ = duration_s;
   for (std::size_t k = 0; k < size_; ++k) {
-    const double rest = from[k].position + from[k].velocity * duration_s / 2 +
-                        from[k].acceleration * duration_s * duration_s / 12;
+    const double rest =
+        from[k].position + from[k].velocity * duration_s / 2 + from[k].acceleration * duration_s * duration_s / 12;
     motions_[k] = Quintic(from[k], rest, duration_s);
   }
 }

@@ -59,8 +59,7 @@ Wrench SafeDescent::update(const Matrix3& R_WB, const Vector3& w_WB_B_rad_s, con
 
   const double fade = std::exp(-elapsed_s_ / config_.feed_forward_time_constant_s);
   const Vector3 force_W = Vector3::UnitZ() * (limited * mass_kg_ * gravity_m_s2) + fade * feed_forward_W_.force;
-  const Vector3 alpha =
-      config_.attitude_gain_1_s2 * attitude_error(R_WB) - config_.rate_gain_1_s * w_WB_B_rad_s;
+  const Vector3 alpha = config_.attitude_gain_1_s2 * attitude_error(R_WB) - config_.rate_gain_1_s * w_WB_B_rad_s;
   const Vector3 gyroscopic = w_WB_B_rad_s.cross(I_kg_m2_ * w_WB_B_rad_s);
   return {R_WB.transpose() * force_W,
           I_kg_m2_ * alpha + gyroscopic + fade * (R_WB.transpose() * feed_forward_W_.moment)};

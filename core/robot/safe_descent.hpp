@@ -16,17 +16,17 @@ enum class SafeManoeuvre {
 enum class SafePhase { idle, holding, descending, landed };
 
 struct SafeDescentConfig {
-  double hold_s = 2.0;                        // not for SafeManoeuvre::descend
+  double hold_s = 2.0;  // not for SafeManoeuvre::descend
   double feed_forward_time_constant_s = 0.5;
   double descent_m_s = 0.5;
-  double vertical_gain_1_s = 2.0;             // on the vertical speed integrated from the accelerometer
-  double force_share_min = 0.8;               // of the weight
+  double vertical_gain_1_s = 2.0;  // on the vertical speed integrated from the accelerometer
+  double force_share_min = 0.8;    // of the weight
   double force_share_max = 1.15;
   double attitude_gain_1_s2 = 40;
   double rate_gain_1_s = 12;
-  double attitude_error_rad_max = 0.3;        // larger errors are worked off at a bounded rate
-  double landed_s = 0.7;                      // not falling for so long, though asked to: standing
-  double descent_s_max = 40;                  // then the motors stop in any case
+  double attitude_error_rad_max = 0.3;  // larger errors are worked off at a bounded rate
+  double landed_s = 0.7;                // not falling for so long, though asked to: standing
+  double descent_s_max = 40;            // then the motors stop in any case
 };
 
 /// Real-time safe; one thread.

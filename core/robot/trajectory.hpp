@@ -46,8 +46,8 @@ class Progress {
  private:
   SpeedProfile profile_ = SpeedProfile::quintic;
   double duration_s_ = 0;
-  double ramp_s_ = 0;   // trapezoid only
-  double cruise_ = 0;   // speed between the ramps, 1/s
+  double ramp_s_ = 0;  // trapezoid only
+  double cruise_ = 0;  // speed between the ramps, 1/s
 };
 
 /// To a goal pose at rest; straight, and turning about one fixed axis, when it begins at rest. Begun while
@@ -74,7 +74,7 @@ class PoseMotion {
   double start_s_ = 0;
   bool straight_ = true;
   Progress progress_;
-  JointMotion quintic_;    // p, then phi in units of `turn_unit_`
+  JointMotion quintic_;  // p, then phi in units of `turn_unit_`
   double turn_unit_ = 1;
 };
 

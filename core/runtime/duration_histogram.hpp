@@ -20,20 +20,27 @@ class DurationHistogram {
   static constexpr std::size_t bins = 16 + (36 - 4) * 16;
 
   void add(Duration d) noexcept {
-    Count& bin = counts_[bin_of(d)];
-    if (bin < std::numeric_limits<Count>::max()) ++bin;
+    const std::size_t bin = bin_of(d);
+    if (counts_[bin] < std::numeric_limits<Count>::max()) ++counts_[bin];
+    low_ = std::min(low_, bin);
+    high_ = std::max(high_, bin + 1);
   }
-  void clear() noexcept { counts_.fill(0); }
+  void clear() noexcept {
+    for (std::size_t k = low_; k < high_; ++k) counts_[k] = 0;
+    low_ = bins;
+    high_ = 0;
+  }
 
   template <class Other>
   void add(const DurationHistogram<Other>& other) noexcept {
-    for (std::size_t k = 0; k < bins; ++k) counts_[k] += other.counts()[k];
+    for (std::size_t k = other.low_; k < other.high_; ++k) counts_[k] += other.counts_[k];
+    low_ = std::min(low_, other.low_);
+    high_ = std::max(high_, other.high_);
   }
-  const std::array<Count, bins>& counts() const { return counts_; }
 
   std::uint64_t total() const {
     std::uint64_t sum = 0;
-    for (const Count count : counts_) sum += count;
+    for (std::size_t k = low_; k < high_; ++k) sum += counts_[k];
     return sum;
   }
 
@@ -43,7 +50,7 @@ class DurationHistogram {
     const auto rank =
         std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(fraction * static_cast<double>(count))));
     std::uint64_t seen = 0;
-    for (std::size_t k = 0; k < bins; ++k) {
+    for (std::size_t k = low_; k < high_; ++k) {
       seen += counts_[k];
       if (seen >= rank) return middle_of(k);
     }
@@ -64,7 +71,13 @@ class DurationHistogram {
     return Duration{low + ((std::int64_t{1} << octave) >> 1)};
   }
 
+  template <class Other>
+  friend class DurationHistogram;
+
   std::array<Count, bins> counts_{};
+  // Where samples lie: a heartbeat looks at ten of these.
+  std::size_t low_ = bins;
+  std::size_t high_ = 0;
 };
 
 }  // namespace eciton::runtime

@@ -22,6 +22,11 @@ Status start_all(Launches& launches) {
   return ok();
 }
 
+void stop_all(Launches& launches) {
+  for (const auto& launch : launches) launch->supervisor().request_stop();
+  for (const auto& launch : launches) launch->supervisor().stop_all();
+}
+
 void watch(Launches& launches, const std::vector<int>& extra_descriptors, Duration timeout,
            const std::function<void(Launch&, const ChildReport&)>& on_end) {
   std::vector<pollfd> descriptors;

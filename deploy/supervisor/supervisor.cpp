@@ -94,11 +94,17 @@ std::optional<Duration> Supervisor::next_restart() const {
   return next;
 }
 
-void Supervisor::stop_all() {
-  const Duration patience_end = monotonic() + config_.stop_patience;
+void Supervisor::request_stop() {
+  if (stop_requested_at_) return;
+  stop_requested_at_ = monotonic();
   for (const auto& child : children_) {
     if (child->process) child->process->signal(SIGTERM);
   }
+}
+
+void Supervisor::stop_all() {
+  request_stop();
+  const Duration patience_end = *stop_requested_at_ + config_.stop_patience;
   while (true) {
     std::vector<pollfd> descriptors;
     for (const auto& child : children_) {
@@ -119,6 +125,7 @@ void Supervisor::stop_all() {
     child->process.reset();  // kills and reaps it
     child->report.state = ChildState::stopped;
   }
+  stop_requested_at_.reset();
 }
 
 std::vector<ChildReport> Supervisor::reports() const {

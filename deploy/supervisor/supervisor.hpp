@@ -65,6 +65,8 @@ class Supervisor {
   /// When the next restart is due, on the monotonic clock.
   std::optional<Duration> next_restart() const;
 
+  /// SIGTERM to all; stop_all waits for them.
+  void request_stop();
   /// SIGTERM to all, a bounded wait, SIGKILL to what still runs. Nothing runs afterwards.
   void stop_all();
 
@@ -89,6 +91,7 @@ class Supervisor {
   SupervisorConfig config_;
   Clock clock_;
   std::vector<std::unique_ptr<Child>> children_;
+  std::optional<Duration> stop_requested_at_;
 };
 
 /// Waits until one of the descriptors is readable or for `timeout`.

@@ -35,8 +35,8 @@ double JointActuator::step(const JointSetpoint& command, bool powered, double po
   }
   if (!was_powered_) reference_rad_ = measured_rad;  // a servo switched on starts from where it is
   was_powered_ = true;
-  const double wanted_rad =
-      std::clamp(finite_or(command.position_rad, reference_rad_), -joint_->position_rad_max, joint_->position_rad_max);
+  const double wanted_rad = std::clamp(finite_or(command.position_rad, reference_rad_), -joint_->position_rad_max,
+                                       joint_->position_rad_max);
   const double move_rad_max = joint_->rate_rad_s_max * dt_s;
   reference_rad_ += std::clamp(wanted_rad - reference_rad_, -move_rad_max, move_rad_max);
   torque_Nm_ = std::clamp(servo_stiffness_Nm_rad * (reference_rad_ - measured_rad), -joint_->torque_Nm_max,

@@ -47,8 +47,8 @@ class Couplings {
   };
   struct PairState {
     Phase phase = Phase::open;
-    int steps = 0;         // since the capture began
-    robot::Pose X_AB;      // of the female's link in the male's, at that moment
+    int steps = 0;     // since the capture began
+    robot::Pose X_AB;  // of the female's link in the male's, at that moment
   };
 
   void step_open(std::size_t pair);
@@ -66,8 +66,8 @@ class Couplings {
   int held_ = 0;
   std::vector<PortState> ports_;
   std::vector<PairState> pairs_;
-  std::vector<int> contype_, conaffinity_;         // of all geoms, as the model has them
-  std::vector<double> row_force_, joint_force_;    // scratch of force() and pull()
+  std::vector<int> contype_, conaffinity_;       // of all geoms, as the model has them
+  std::vector<double> row_force_, joint_force_;  // scratch of force() and pull()
 };
 
 }  // namespace eciton::hal::sim

@@ -21,9 +21,9 @@ struct SensorFrame {
   std::uint32_t rotor_count = 0;
   std::uint32_t joint_count = 0;
   std::uint32_t port_count = 0;
-  ImuReading imu;          // the newest sample
-  bool has_pose = false;   // false until the first measurement has arrived
-  PoseReading pose;        // the newest that has arrived, stamped when it was measured
+  ImuReading imu;         // the newest sample
+  bool has_pose = false;  // false until the first measurement has arrived
+  PoseReading pose;       // the newest that has arrived, stamped when it was measured
   std::array<RotorReading, max_rotors> rotors{};
   std::array<JointReading, max_joints> joints{};
   std::array<LatchReading, max_ports> latches{};
@@ -33,9 +33,9 @@ struct SensorFrame {
 enum class LatchCommand : std::uint8_t { hold, engage, release };
 
 struct ActuatorFrame {
-  TimePoint stamp;               // of the sensor frame acted on
-  bool armed = false;            // false: motors run down, whatever the setpoints say
-  bool joints_powered = false;   // false: joints swing freely, braked by their gears
+  TimePoint stamp;              // of the sensor frame acted on
+  bool armed = false;           // false: motors run down, whatever the setpoints say
+  bool joints_powered = false;  // false: joints swing freely, braked by their gears
   std::array<RotorSetpoint, max_rotors> rotors{};
   std::array<JointSetpoint, max_joints> joints{};
   std::array<LatchCommand, max_ports> latches{};

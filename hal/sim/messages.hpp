@@ -64,7 +64,7 @@ static_assert(std::is_trivially_copyable_v<Hello> && std::is_trivially_copyable_
               std::is_trivially_copyable_v<Actuators> && std::is_trivially_copyable_v<Bye>);
 
 /// Room for any message.
-inline constexpr std::size_t message_size_max = std::max({sizeof(Hello), sizeof(Welcome), sizeof(Refused),
-                                                          sizeof(Sensors), sizeof(Actuators), sizeof(Bye)});
+inline constexpr std::size_t message_size_max =
+    std::max({sizeof(Hello), sizeof(Welcome), sizeof(Refused), sizeof(Sensors), sizeof(Actuators), sizeof(Bye)});
 
 }  // namespace eciton::hal::sim

@@ -21,7 +21,8 @@ constexpr const char* cone_contact = " contype='0' conaffinity='1' solref='.01 1
 constexpr const char* foot_contact = " contype='0' conaffinity='2' priority='0'";
 // Firm, and with friction that hardly creeps: a landed module must stand still under a gust.
 constexpr const char* floor_contact =
-    " contype='2' conaffinity='0' priority='1' condim='3' friction='.8 .005 .0001' solref='.01 1' solimp='.95 .99 .001'";
+    " contype='2' conaffinity='0' priority='1' condim='3' friction='.8 .005 .0001' solref='.01 1' solimp='.95 .99 "
+    ".001'";
 
 constexpr double tip_radius_m = 0.018;
 constexpr double foot_radius_m = 0.01;
@@ -97,7 +98,8 @@ std::string link_body(const robot::Airframe& airframe, std::size_t module, std::
   for (std::size_t p = 0; p < airframe.ports.size(); ++p) {
     const robot::PortGeometry& port = airframe.ports[p];
     if (port.joint != static_cast<int>(k)) continue;
-    text << (port.kind == robot::PortKind::male ? tip(port, name("tip", module, p)) : cone(port, name("cone", module, p)));
+    text << (port.kind == robot::PortKind::male ? tip(port, name("tip", module, p))
+                                                : cone(port, name("cone", module, p)));
   }
   text << "</body>";
   return text.str();
@@ -189,13 +191,14 @@ void index_modules(WorldModel& world, const robot::Airframe& airframe, const std
       const robot::PortGeometry& port = airframe.ports[p];
       const bool male = port.kind == robot::PortKind::male;
       const std::string geom = male ? name("tip", i, p) : name("cone", i, p) + "_0";
-      world.ports.push_back({.module = i,
-                             .port = p,
-                             .kind = port.kind,
-                             .link_body = mj_name2id(m, mjOBJ_BODY, name("link", i, static_cast<std::size_t>(port.joint)).c_str()),
-                             .X_LP = {port.p_JP_m, port.R_JP},
-                             .geom_first = mj_name2id(m, mjOBJ_GEOM, geom.c_str()),
-                             .geom_count = male ? 1 : cone_boxes});
+      world.ports.push_back(
+          {.module = i,
+           .port = p,
+           .kind = port.kind,
+           .link_body = mj_name2id(m, mjOBJ_BODY, name("link", i, static_cast<std::size_t>(port.joint)).c_str()),
+           .X_LP = {port.p_JP_m, port.R_JP},
+           .geom_first = mj_name2id(m, mjOBJ_GEOM, geom.c_str()),
+           .geom_count = male ? 1 : cone_boxes});
     }
   }
   each_pair(airframe, starts.size(), [&](std::size_t i, std::size_t a, std::size_t j, std::size_t b) {
@@ -214,7 +217,8 @@ std::string mjcf(const WorldConfig& config, const robot::Airframe& airframe, con
   text << "<mujoco model='eciton'><compiler angle='radian' inertiafromgeom='false'/><option timestep='" << step_s
        << "' gravity='0 0 " << -robot::gravity_m_s2
        << "' integrator='Euler' solver='Newton' iterations='30' tolerance='1e-10'/><size njmax='" << 120 + 80 * n
-       << "' nconmax='" << 20 + 20 * n << "'/><default><geom contype='0' conaffinity='0' mass='0'/></default><worldbody>";
+       << "' nconmax='" << 20 + 20 * n
+       << "'/><default><geom contype='0' conaffinity='0' mass='0'/></default><worldbody>";
   if (config.floor) text << "<geom name='floor' type='plane' size='50 50 1'" << floor_contact << "/>";
   for (std::size_t i = 0; i < n; ++i) text << module_body(airframe, i, starts[i], mismatch[i], config.floor);
   text << "</worldbody><contact>";

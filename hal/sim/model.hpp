@@ -32,9 +32,9 @@ inline constexpr double rest_height_m = 0.13;
 /// One module in mjModel and mjData.
 struct ModuleIndex {
   std::uint32_t id;
-  int body;   // its frame is B
-  int qpos;   // of the free joint: p_WB, q_WB
-  int dof;    // v_WB in W, then w_WB in B
+  int body;  // its frame is B
+  int qpos;  // of the free joint: p_WB, q_WB
+  int dof;   // v_WB in W, then w_WB in B
   std::array<int, max_joints> joint_qpos;
   std::array<int, max_joints> joint_dof;
   robot::Vector3 p_B_com_m;  // centre of mass of the main body alone, where xfrc_applied acts

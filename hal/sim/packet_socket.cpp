@@ -16,8 +16,8 @@ Result<sockaddr_un> address_of(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof address.sun_path) {
-    return Error{"socket path '" + path + "' has " + std::to_string(path.size()) + " characters; a Unix socket takes 1 to " +
-                 std::to_string(sizeof address.sun_path - 1)};
+    return Error{"socket path '" + path + "' has " + std::to_string(path.size()) +
+                 " characters; a Unix socket takes 1 to " + std::to_string(sizeof address.sun_path - 1)};
   }
   std::copy(path.begin(), path.end(), address.sun_path);
   return address;
@@ -71,7 +71,8 @@ Result<PacketSocket> listen_at(const std::string& path) {
     if (errno != EADDRINUSE) return Error{failure("cannot bind", path)};
     const PacketSocket probe(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0));
     if (connect_fd(probe.fd(), *address) == 0) {
-      return Error{"the world's socket " + path + " is in use by another world; stop it or give this one another path"};
+      return Error{"the world's socket " + path +
+                   " is in use by another world; stop it or give this one another path"};
     }
     return Error{"the world's socket " + path +
                  " already exists, though nobody serves it; remove the file or give another path"};

@@ -24,7 +24,8 @@ void check(const robot::Airframe& airframe, const std::vector<ModuleStart>& star
   if (starts.empty() || starts.size() > max_modules) {
     refuse(std::to_string(starts.size()) + " modules; it takes 1 to " + std::to_string(max_modules));
   }
-  if (airframe.rotors.size() > max_rotors || airframe.joints.size() > max_joints || airframe.ports.size() > max_ports) {
+  if (airframe.rotors.size() > max_rotors || airframe.joints.size() > max_joints ||
+      airframe.ports.size() > max_ports) {
     refuse("airframe " + airframe.name + " has more than 8 rotors, 8 joints or 4 ports");
   }
   for (const robot::PortGeometry& port : airframe.ports) {

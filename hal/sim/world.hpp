@@ -20,7 +20,7 @@ namespace eciton::hal::sim {
 struct TruthPose {
   TimePoint stamp;
   robot::Pose X_WB;
-  robot::Vector3 v_WB_m_s;      // of B's origin
+  robot::Vector3 v_WB_m_s;  // of B's origin
   robot::Vector3 p_WM_m;
   robot::Vector3 v_WM_m_s;
   robot::Vector3 w_WM_M_rad_s;
@@ -33,9 +33,9 @@ struct TruthContact {
   std::uint32_t port = 0;
   std::uint32_t peer_id = 0;
   std::uint32_t peer_port = 0;
-  robot::Vector3 p_W_m;         // docking point
-  robot::Wrench wrench_P_W;     // of the module on the peer, about the docking point, world axes
-  double gap_m = 0;             // between the two docking points
+  robot::Vector3 p_W_m;      // docking point
+  robot::Wrench wrench_P_W;  // of the module on the peer, about the docking point, world axes
+  double gap_m = 0;          // between the two docking points
 };
 
 class World : public runtime::Plant {

@@ -109,9 +109,9 @@ struct WorldConfig {
   double gust_N = 0;               // standard deviation per horizontal axis, half of it vertical
   std::array<double, 3> wind_N{};  // constant force on every module
   std::string sensing = "mocap";
-  double noise = 1;                // scales every sensor's noise, bias and drift
+  double noise = 1;  // scales every sensor's noise, bias and drift
   bool floor = true;
-  std::string break_what;          // "weld-off": latches report, but never hold
+  std::string break_what;  // "weld-off": latches report, but never hold
   ImuConfig imu;
   PoseSensorConfig mocap;
   PoseSensorConfig lio = lio_defaults();

@@ -142,13 +142,12 @@ Status WorldServer::wait_for_answers() {
     if (!waiting) return ok();
     const auto when = [&] { return " at tick " + std::to_string(tick_); };
     if (gone) {
-      return Error{"lost a hardware host" + when() + ": " + absent([](const Host& host, std::uint64_t) {
-                     return !host.socket.is_open();
-                   })};
+      return Error{"lost a hardware host" + when() + ": " +
+                   absent([](const Host& host, std::uint64_t) { return !host.socket.is_open(); })};
     }
     if (monotonic_now() > deadline) {
-      return Error{"no actuator frame within " + std::to_string(to_s(config_.stall_timeout)) + " s" + when() + " from " +
-                   absent(is_missing)};
+      return Error{"no actuator frame within " + std::to_string(to_s(config_.stall_timeout)) + " s" + when() +
+                   " from " + absent(is_missing)};
     }
     pump(stop_check);
   }

@@ -14,13 +14,13 @@
 namespace eciton::hal::sim {
 
 struct ServerConfig {
-  std::string path;                    // of the socket; must not exist yet
-  std::vector<std::uint32_t> modules;  // that have a host; empty: all of the world
+  std::string path;                         // of the socket; must not exist yet
+  std::vector<std::uint32_t> modules = {};  // that have a host; empty: all of the world
   Pace pace = Pace::lockstep;
   Duration tick = 2ms;
-  Duration stall_timeout = 10s;        // lockstep: for one tick's answers
-  Duration join_timeout = 60s;         // lockstep: for all hosts to connect
-  Duration watchdog = 50ms;            // wall: a host silent for so long has its module cut (World::cut)
+  Duration stall_timeout = 10s;  // lockstep: for one tick's answers
+  Duration join_timeout = 60s;   // lockstep: for all hosts to connect
+  Duration watchdog = 50ms;      // wall: a host silent for so long has its module cut (World::cut)
 };
 
 struct ServerStats {
@@ -65,10 +65,10 @@ class WorldServer {
     PacketSocket socket;
     std::uint64_t answered_tick = 0;
     Actuators answer;
-    bool fresh = false;           // `answer` has not been handed to the world yet
-    bool alive = false;           // has a host whose watchdog has not run out
-    Duration heard{};             // monotonic time of its last word
-    std::string left;             // why its host is gone, if it is
+    bool fresh = false;  // `answer` has not been handed to the world yet
+    bool alive = false;  // has a host whose watchdog has not run out
+    Duration heard{};    // monotonic time of its last word
+    std::string left;    // why its host is gone, if it is
   };
 
   Status run_lockstep(TimePoint until);

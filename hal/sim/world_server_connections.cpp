@@ -22,7 +22,8 @@ void WorldServer::pump(Duration timeout) {
   std::array<pollfd, 1 + strangers_max + max_modules> entries{};
   nfds_t count = 0;
   entries[count++] = {.fd = listener_.fd(), .events = POLLIN, .revents = 0};
-  for (const PacketSocket& stranger : strangers_) entries[count++] = {.fd = stranger.fd(), .events = POLLIN, .revents = 0};
+  for (const PacketSocket& stranger : strangers_)
+    entries[count++] = {.fd = stranger.fd(), .events = POLLIN, .revents = 0};
   for (const Host& host : hosts_) {
     if (host.socket.is_open()) entries[count++] = {.fd = host.socket.fd(), .events = POLLIN, .revents = 0};
   }
@@ -59,7 +60,8 @@ void WorldServer::greet(PacketSocket& stranger, const PacketSocket::Received& re
     stranger.send(refused);
     return;
   }
-  Host& host = *std::find_if(hosts_.begin(), hosts_.end(), [&](const Host& h) { return h.module == hello->module_id; });
+  Host& host =
+      *std::find_if(hosts_.begin(), hosts_.end(), [&](const Host& h) { return h.module == hello->module_id; });
   Welcome welcome;
   welcome.pace = config_.pace;
   welcome.tick_ns = config_.tick.count();
@@ -101,8 +103,7 @@ void WorldServer::drain(Host& host) {
       const auto bye = host.socket.as<Bye>(received);
       return drop(host, bye ? std::string(bye->reason.view()) : "its host said goodbye");
     }
-    const auto answer =
-        received.type == MessageType::actuators ? host.socket.as<Actuators>(received) : std::nullopt;
+    const auto answer = received.type == MessageType::actuators ? host.socket.as<Actuators>(received) : std::nullopt;
     if (!answer || answer->tick > tick_) {
       ++stats_.bad_messages;
       return drop(host, "its host sent a message that this world does not know");

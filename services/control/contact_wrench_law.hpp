@@ -15,11 +15,11 @@ enum class ContactLaw { none, paper, local };
 
 struct ContactWrenchLawConfig {
   ContactLaw law = ContactLaw::local;
-  double observer_gain_1_s = 10;      // K_I of the wrench observer: the local law's rate is at most a third
-  double bending_rate_1_s = 14;       // and this by the number of members: above it the chain's bending is excited
-  double paper_period_s = 0.1;        // the paper's law limit-cycles from N = 3 when applied at 100 Hz
-  double paper_gain = 0.4;            // gamma for N = 2, halved for each further member
-  double force_N_max = 15;            // of the feed-forward, per axis
+  double observer_gain_1_s = 10;  // K_I of the wrench observer: the local law's rate is at most a third
+  double bending_rate_1_s = 14;   // and this by the number of members: above it the chain's bending is excited
+  double paper_period_s = 0.1;    // the paper's law limit-cycles from N = 3 when applied at 100 Hz
+  double paper_gain = 0.4;        // gamma for N = 2, halved for each further member
+  double force_N_max = 15;        // of the feed-forward, per axis
   double moment_Nm_max = 3;
   double fade_time_constant_s = 1.0;  // of the feed-forward, when all peers are gone
   robot::FreshnessConfig freshness{};

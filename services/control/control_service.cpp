@@ -27,7 +27,7 @@ robot::Matrix3 upright(const robot::Matrix3& R) {
 ControlService::ControlService(bus::Participant& ring, const ControlConfig& config, const robot::Airframe& airframe)
     : config_(config),
       airframe_(airframe),
-      reference_(airframe, {.speed_m_s = config.speed_m_s}),
+      reference_(airframe, {.speed_m_s = config.speed_m_s, .limits = {}}),
       law_({.law = contact_law(config.law), .observer_gain_1_s = config.observer_gain_1_s}),
       allocator_(airframe),
       module_state_(ring.create_reader(topics::module_state)),

@@ -8,10 +8,10 @@ namespace eciton::control {
 
 struct DisturbanceFeedbackConfig {
   double rate_1_s = 20;
-  double freeze_gap_m = 0.05;         // commanded gap below which it freezes
+  double freeze_gap_m = 0.05;  // commanded gap below which it freezes
   double decay_time_constant_s = 1.0;
-  double force_N_max = 12;            // per axis
-  bool feed_moment = false;           // the attitude's own integral copes with moments
+  double force_N_max = 12;   // per axis
+  bool feed_moment = false;  // the attitude's own integral copes with moments
   double moment_Nm_max = 1;
 };
 

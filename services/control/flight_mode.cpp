@@ -28,17 +28,22 @@ FlightDecision decide_arm(FlightMode mode, const FlightConditions& now, const Fl
 FlightDecision decide_motion(FlightMode mode, FlightMode next, const FlightConditions& now,
                              const FlightModeConfig& config) {
   switch (mode) {
-    case FlightMode::disarmed: return refused(mode, "disarmed; arm and take off first");
-    case FlightMode::armed: return refused(mode, "on the ground; take off first");
-    case FlightMode::stopped: return refused(mode, "stopped; disarm first");
-    case FlightMode::failsafe: return refused(mode, "in fail-safe; the state was lost");
+    case FlightMode::disarmed:
+      return refused(mode, "disarmed; arm and take off first");
+    case FlightMode::armed:
+      return refused(mode, "on the ground; take off first");
+    case FlightMode::stopped:
+      return refused(mode, "stopped; disarm first");
+    case FlightMode::failsafe:
+      return refused(mode, "in fail-safe; the state was lost");
     case FlightMode::takeoff:
       if (next == FlightMode::move) return refused(mode, "taking off; wait until it hovers");
       break;
     case FlightMode::land:
       if (next == FlightMode::move) return refused(mode, "landing; wait until it is down");
       break;
-    default: break;
+    default:
+      break;
   }
   if (next == FlightMode::move) {
     if (const char* fault = state_fault(now, config)) return refused(mode, fault);
@@ -50,14 +55,22 @@ FlightDecision decide_motion(FlightMode mode, FlightMode next, const FlightCondi
 
 const char* name(FlightMode mode) {
   switch (mode) {
-    case FlightMode::disarmed: return "disarmed";
-    case FlightMode::armed: return "armed";
-    case FlightMode::takeoff: return "takeoff";
-    case FlightMode::hover: return "hover";
-    case FlightMode::move: return "move";
-    case FlightMode::land: return "land";
-    case FlightMode::failsafe: return "failsafe";
-    case FlightMode::stopped: return "stopped";
+    case FlightMode::disarmed:
+      return "disarmed";
+    case FlightMode::armed:
+      return "armed";
+    case FlightMode::takeoff:
+      return "takeoff";
+    case FlightMode::hover:
+      return "hover";
+    case FlightMode::move:
+      return "move";
+    case FlightMode::land:
+      return "land";
+    case FlightMode::failsafe:
+      return "failsafe";
+    case FlightMode::stopped:
+      return "stopped";
   }
   return "?";
 }
@@ -65,8 +78,10 @@ const char* name(FlightMode mode) {
 FlightDecision decide(FlightMode mode, FlightRequest request, const FlightConditions& now,
                       const FlightModeConfig& config) {
   switch (request) {
-    case FlightRequest::stop: return granted(FlightMode::stopped);
-    case FlightRequest::arm: return decide_arm(mode, now, config);
+    case FlightRequest::stop:
+      return granted(FlightMode::stopped);
+    case FlightRequest::arm:
+      return decide_arm(mode, now, config);
     case FlightRequest::disarm:
       if (flying(mode)) return refused(mode, "flying; land first, or stop");
       return granted(FlightMode::disarmed);
@@ -76,8 +91,10 @@ FlightDecision decide(FlightMode mode, FlightRequest request, const FlightCondit
       if (mode != FlightMode::armed) return refused(mode, "already flying");
       if (const char* fault = state_fault(now, config)) return refused(mode, fault);
       return granted(FlightMode::takeoff);
-    case FlightRequest::go_to: return decide_motion(mode, FlightMode::move, now, config);
-    case FlightRequest::land: return decide_motion(mode, FlightMode::land, now, config);
+    case FlightRequest::go_to:
+      return decide_motion(mode, FlightMode::move, now, config);
+    case FlightRequest::land:
+      return decide_motion(mode, FlightMode::land, now, config);
   }
   return refused(mode, "unknown request");
 }
@@ -86,7 +103,8 @@ FlightDecision advance(FlightMode mode, const FlightConditions& now, const Fligh
   const bool state_lost = !now.state_usable || !(now.state_age_s <= config.state_age_s_max);
   switch (mode) {
     case FlightMode::disarmed:
-    case FlightMode::stopped: return granted(mode);
+    case FlightMode::stopped:
+      return granted(mode);
     case FlightMode::armed:
       if (state_lost) return {FlightMode::disarmed, true, "state lost on the ground"};
       if (now.duplicate_id) return {FlightMode::disarmed, true, "another module has this id"};
@@ -98,7 +116,8 @@ FlightDecision advance(FlightMode mode, const FlightConditions& now, const Fligh
     case FlightMode::takeoff:
     case FlightMode::hover:
     case FlightMode::move:
-    case FlightMode::land: break;
+    case FlightMode::land:
+      break;
   }
   if (state_lost) {
     return {FlightMode::failsafe, true, now.state_usable ? "state older than its limit" : "estimation lost"};
@@ -111,8 +130,8 @@ FlightDecision advance(FlightMode mode, const FlightConditions& now, const Fligh
 }
 
 bool TouchdownDetector::update(double demanded_force_N, double weight_N, double vertical_speed_m_s, double dt_s) {
-  const bool standing = demanded_force_N < config_.force_share_max * weight_N &&
-                        std::abs(vertical_speed_m_s) < config_.speed_m_s_max;
+  const bool standing =
+      demanded_force_N < config_.force_share_max * weight_N && std::abs(vertical_speed_m_s) < config_.speed_m_s_max;
   standing_s_ = standing ? standing_s_ + dt_s : 0;
   return standing_s_ >= config_.for_s;
 }

@@ -12,26 +12,26 @@ enum class FlightRequest { arm, disarm, stop, takeoff, go_to, land };
 const char* name(FlightMode mode);
 
 struct FlightModeConfig {
-  double state_age_s_max = 0.1;     // older, in the air: fail-safe
-  double recovered_s = 0.3;         // the state must be good for so long before hover is resumed
+  double state_age_s_max = 0.1;  // older, in the air: fail-safe
+  double recovered_s = 0.3;      // the state must be good for so long before hover is resumed
 };
 
 /// What the mode depends on, at one time.
 struct FlightConditions {
-  bool state_ready = false;         // the estimator says ready
-  bool state_usable = false;        // ready or dead reckoning
-  double state_age_s = 1e9;         // of the last state
-  double state_good_s = 0;          // usable and fresh without a break for so long
+  bool state_ready = false;   // the estimator says ready
+  bool state_usable = false;  // ready or dead reckoning
+  double state_age_s = 1e9;   // of the last state
+  double state_good_s = 0;    // usable and fresh without a break for so long
   bool trajectory_finished = false;
   bool landed = false;
-  bool duplicate_id = false;        // another module carries our id
+  bool duplicate_id = false;  // another module carries our id
   bool emergency_descent_over = false;
 };
 
 struct FlightDecision {
   FlightMode mode = FlightMode::disarmed;
-  bool accepted = true;             // of the request, if there was one
-  const char* reason = "";          // of a refusal, or of a transition by itself; a static string
+  bool accepted = true;     // of the request, if there was one
+  const char* reason = "";  // of a refusal, or of a transition by itself; a static string
 };
 
 constexpr bool flying(FlightMode mode) {
@@ -48,7 +48,7 @@ FlightDecision decide(FlightMode mode, FlightRequest request, const FlightCondit
 FlightDecision advance(FlightMode mode, const FlightConditions& now, const FlightModeConfig& config = {});
 
 struct TouchdownConfig {
-  double force_share_max = 0.7;     // of the weight, asked of the rotors
+  double force_share_max = 0.7;  // of the weight, asked of the rotors
   double speed_m_s_max = 0.1;
   double for_s = 0.4;
 };

@@ -81,7 +81,8 @@ Wrench PoseControl::update(const PoseControlInput& in, double dt_s) {
                                in.reference.a_WM + Vector3(0, 0, robot::gravity_m_s2);
   // The reference's angular acceleration, seen from axes that turn with the module.
   const Vector3 alpha_ff = R_MD * in.reference.alpha_WM_M - w.cross(w_d);
-  const Vector3 alpha = gains_.ap_1_s2.cwiseProduct(e_R) + integral_rad_s2_ + gains_.ad_1_s.cwiseProduct(e_w) + alpha_ff;
+  const Vector3 alpha =
+      gains_.ap_1_s2.cwiseProduct(e_R) + integral_rad_s2_ + gains_.ad_1_s.cwiseProduct(e_w) + alpha_ff;
   return {R.transpose() * (in.mass_kg * acceleration + in.feed_forward_W.force),
           in.I_M_kg_m2 * alpha + w.cross(in.I_M_kg_m2 * w) + R.transpose() * in.feed_forward_W.moment};
 }

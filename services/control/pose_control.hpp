@@ -25,10 +25,10 @@ PoseGains gains_free();
 
 struct PoseControlConfig {
   PoseGains gains = gains_free();
-  double gain_blend_s = 0.5;                   // new gains come in over this time: the output does not step
-  Vector3 integral_m_s2_max{3, 3, 4};          // of the integral's part of the acceleration
+  double gain_blend_s = 0.5;           // new gains come in over this time: the output does not step
+  Vector3 integral_m_s2_max{3, 3, 4};  // of the integral's part of the acceleration
   Vector3 integral_rad_s2_max{8, 8, 8};
-  double position_error_m_max = 1.0;           // larger errors count as this
+  double position_error_m_max = 1.0;  // larger errors count as this
   double attitude_error_rad_max = 0.8;
 };
 

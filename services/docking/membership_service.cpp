@@ -98,7 +98,7 @@ void Membership::claim(std::uint32_t port) noexcept {
   }
   const chain::Claim& before = own_[port];
   const bool same = before.module != 0 && before.withdrawn == claim.withdrawn && before.peer == claim.peer &&
-                    before.peer_port == claim.peer_port && before.latch == claim.latch;
+                    before.peer_port == claim.peer_port;  // open or ready: no link either way, and no new version
   if (same) return;
   claim.incarnation = config_.incarnation;
   claim.sequence_number = ++sequence_number_;

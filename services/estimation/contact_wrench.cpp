@@ -22,7 +22,8 @@ ContactWrenches contact_wrenches(std::span<const MemberWrench> all, const robot:
     weight += out.members[k].freshness;
     out.mean_r_W += m.r_W / static_cast<double>(out.count);
     const bool last = k + 1 == out.count;
-    out.members[k].link_W = last ? m.port_to_next_W : Vector3(0.5 * (m.port_to_next_W + members[k + 1].port_to_last_W));
+    out.members[k].link_W =
+        last ? m.port_to_next_W : Vector3(0.5 * (m.port_to_next_W + members[k + 1].port_to_last_W));
   }
   if (!out.complete || weight < 1e-9) return out;
 

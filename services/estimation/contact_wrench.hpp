@@ -14,28 +14,28 @@ namespace eciton::estimation {
 
 /// What one member shares, or shared last. Members stand in the order of the chain.
 struct MemberWrench {
-  bool known = false;      // heard of since the chain formed
+  bool known = false;  // heard of since the chain formed
   double age_s = 0;
-  robot::Wrench external_W;  // about r
-  robot::Vector3 r_W = robot::Vector3::Zero();              // composite centre of mass
-  robot::Vector3 port_to_next_W = robot::Vector3::Zero();   // docking point towards the next member (male)
-  robot::Vector3 port_to_last_W = robot::Vector3::Zero();   // towards the one before (female)
+  robot::Wrench external_W;                                // about r
+  robot::Vector3 r_W = robot::Vector3::Zero();             // composite centre of mass
+  robot::Vector3 port_to_next_W = robot::Vector3::Zero();  // docking point towards the next member (male)
+  robot::Vector3 port_to_last_W = robot::Vector3::Zero();  // towards the one before (female)
 };
 
 struct MemberContact {
-  robot::Wrench d_W;        // external less common wrench, about r
+  robot::Wrench d_W;                               // external less common wrench, about r
   robot::Vector3 link_W = robot::Vector3::Zero();  // P to the next member: midway between what both say
-  robot::Wrench contact_W;  // of this member on the next, about P; zero for the last one
+  robot::Wrench contact_W;                         // of this member on the next, about P; zero for the last one
   double freshness = 0;
 };
 
 struct ContactWrenches {
   std::size_t count = 0;
   std::array<MemberContact, robot::members_max> members{};
-  robot::Wrench common_W;   // disturbance common to all, about mean_r_W
+  robot::Wrench common_W;  // disturbance common to all, about mean_r_W
   robot::Vector3 mean_r_W = robot::Vector3::Zero();
-  std::size_t fresh = 0;    // members that count fully
-  bool complete = false;    // every member known: else all wrenches here are zero
+  std::size_t fresh = 0;  // members that count fully
+  bool complete = false;  // every member known: else all wrenches here are zero
 };
 
 /// Rule for silent members: a member's last wrench is held and its *difference from the common one* fades

@@ -47,8 +47,7 @@ void ErrorStateFilter::predict(const Entry& from, Entry& to) const {
   C.middleRows<3>(V) += from_attitude * C.middleRows<3>(R) + from_bias * C.middleRows<3>(BA);
   C.middleRows<3>(R) = (turn_back * C.middleRows<3>(R) - dt * C.middleRows<3>(BG)).eval();
   C.middleCols<3>(P) += dt * C.middleCols<3>(V);
-  C.middleCols<3>(V) +=
-      C.middleCols<3>(R) * from_attitude.transpose() + C.middleCols<3>(BA) * from_bias.transpose();
+  C.middleCols<3>(V) += C.middleCols<3>(R) * from_attitude.transpose() + C.middleCols<3>(BA) * from_bias.transpose();
   C.middleCols<3>(R) = (C.middleCols<3>(R) * turn - dt * C.middleCols<3>(BG)).eval();
 
   const auto add = [&](int k, double density) { C.diagonal().segment<3>(k).array() += density * density * dt; };

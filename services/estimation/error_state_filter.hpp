@@ -42,31 +42,31 @@ struct ErrorStateFilterConfig {
   double velocity_std_initial_m_s = 1.0;
   double accelerometer_bias_std_initial_m_s2 = 0.12;
   double gyroscope_bias_std_initial_rad_s = 0.02;
-  double position_std_min_m = 5e-4;     // of a measurement: no claim below this is believed
+  double position_std_min_m = 5e-4;  // of a measurement: no claim below this is believed
   double attitude_std_min_rad = 1e-3;
-  double gate_chi2 = 30;                // 6 degrees of freedom: 4e-5 of good measurements are refused
-  double restart_rejected_s = 0.5;      // refused for so long without a break: the filter is wrong, not they
-  double future_s_max = 0.02;           // a pose may be newer than the newest IMU sample by this
-  double imu_gap_s_max = 0.1;           // longer: what was known is lost
-  double dead_reckoning_s = 0.25;       // age of the last good pose
+  double gate_chi2 = 30;            // 6 degrees of freedom: 4e-5 of good measurements are refused
+  double restart_rejected_s = 0.5;  // refused for so long without a break: the filter is wrong, not they
+  double future_s_max = 0.02;       // a pose may be newer than the newest IMU sample by this
+  double imu_gap_s_max = 0.1;       // longer: what was known is lost
+  double dead_reckoning_s = 0.25;   // age of the last good pose
   double lost_s = 2.0;
   double lost_position_std_m = 0.5;
-  int ready_measurements = 8;           // and, to be ready for the first time:
+  int ready_measurements = 8;  // and, to be ready for the first time:
   double ready_position_std_m = 0.05;
   double ready_velocity_std_m_s = 0.15;
   double ready_attitude_std_rad = 0.05;
-  std::size_t buffer_samples = 128;     // of the IMU: how far back a pose may lie
+  std::size_t buffer_samples = 128;  // of the IMU: how far back a pose may lie
 };
 
 enum class FilterMode { initialising, ready, dead_reckoning, lost };
 
 enum class PoseVerdict {
   fused,
-  started,    // the filter (re)started from it
-  rejected,   // by the gate
-  too_old,    // older than the buffer
-  too_new,    // further ahead of the newest IMU sample than can be bridged
-  invalid,    // not finite, or before any IMU sample
+  started,   // the filter (re)started from it
+  rejected,  // by the gate
+  too_old,   // older than the buffer
+  too_new,   // further ahead of the newest IMU sample than can be bridged
+  invalid,   // not finite, or before any IMU sample
 };
 
 struct Estimate {
@@ -74,8 +74,8 @@ struct Estimate {
   FilterMode mode = FilterMode::initialising;
   Pose X_WB;
   Vector3 v_WB = Vector3::Zero();
-  Vector3 a_WB = Vector3::Zero();     // gravity taken off
-  Vector3 w_WB_B = Vector3::Zero();   // bias taken off
+  Vector3 a_WB = Vector3::Zero();    // gravity taken off
+  Vector3 w_WB_B = Vector3::Zero();  // bias taken off
   Vector3 gyroscope_bias = Vector3::Zero();
   Vector3 accelerometer_bias = Vector3::Zero();
   std::array<double, 12> variance{};  // position, attitude (body), velocity, angular velocity

@@ -8,7 +8,7 @@
 namespace eciton::estimation {
 
 struct MomentumObserverConfig {
-  double force_gain_1_s = 8;   // K: 6 to 10
+  double force_gain_1_s = 8;  // K: 6 to 10
   double moment_gain_1_s = 8;
 };
 

@@ -8,12 +8,12 @@ namespace eciton::estimation {
 
 struct ZeroingConfig {
   double duration_s = 6;
-  double batch_s = 1;               // means over batches of this length give the quality, gusts included
+  double batch_s = 1;  // means over batches of this length give the quality, gusts included
   int samples_min = 300;
-  double speed_m_s_max = 0.25;      // faster: not hovering, measured anew
+  double speed_m_s_max = 0.25;  // faster: not hovering, measured anew
   double rate_rad_s_max = 0.25;
-  double timeout_s = 30;            // of being measured anew again and again
-  double quality_N_max = 1.5;       // worse: refused
+  double timeout_s = 30;       // of being measured anew again and again
+  double quality_N_max = 1.5;  // worse: refused
   double quality_Nm_max = 0.3;
 };
 

@@ -56,8 +56,8 @@ RadioService::RadioService(bus::Participant& ring, bus::Participant& swarm, cons
   });
   beacon_.module_id = config.module_id;
   beacon_.incarnation = config.incarnation;
-  beacon_.name = config.name;
-  beacon_.airframe = config.airframe;
+  beacon_.name.assign(config.name);
+  beacon_.airframe.assign(config.airframe);
 }
 
 RadioService::~RadioService() = default;
@@ -144,10 +144,12 @@ void RadioService::watch_own_module() noexcept {
   }
   const bool was_near = near_;
   near_ = docking_ || courted_ || chained_;
-  // What peers decide by is told at once, not at the next beacon.
+  // What peers decide by is told at once, not at the next beacon, and more than once: beacons may be lost.
   const bool changed = beacon_.wrench_zeroed != before.wrench_zeroed || beacon_.flight_mode != before.flight_mode ||
                        beacon_.estimator_mode != before.estimator_mode || near_ != was_near;
-  if (changed) beacon_due_ = std::min(beacon_due_, now_);
+  if (!changed) return;
+  beacon_due_ = std::min(beacon_due_, now_);
+  urgent_beacons_ = 4;
 }
 
 void RadioService::hear_beacons(TimePoint now) noexcept {
@@ -208,6 +210,7 @@ void RadioService::send_beacon(TimePoint now) noexcept {
   beacon_to_swarm_.write(beacon_);
   beacon_to_ring_.write(beacon_);
   beacon_due_ = now + from_s(near_ ? config_.beacon_near_period_s : config_.beacon_period_s);
+  if (urgent_beacons_ > 0 && --urgent_beacons_ > 0) beacon_due_ = now + from_s(config_.beacon_urgent_period_s);
 }
 
 }  // namespace eciton::radio

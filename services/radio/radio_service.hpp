@@ -27,6 +27,7 @@ struct RadioConfig {
   double wrench_rate_Hz = 100;
   double beacon_period_s = 2.0;         // idle
   double beacon_near_period_s = 0.5;    // approaching or in a chain
+  double beacon_urgent_period_s = 0.1;  // of the few that follow a change
   double airtime_budget_bit_s = 6e6;    // of the radio's medium, what this module may use
 
   template <class V>
@@ -68,6 +69,7 @@ class RadioService final : public runtime::Service {
   std::vector<Route> routes_;
   TimePoint now_{};
   TimePoint beacon_due_{};
+  int urgent_beacons_ = 0;
   bool near_ = false;       // approaching or in a chain: wrenches go out
   bool docking_ = false;
   bool courted_ = false;    // a peer approaches us

@@ -11,7 +11,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s VENDOR DOMAIN INCARNATION\n", argv[0]);
     return 2;
   }
-  auto config = bus::conformance::config_of(argv[1], static_cast<std::uint32_t>(std::atoi(argv[2])));
+  auto config = bus::conformance::config_of(argv[1], static_cast<std::uint32_t>(std::atoi(argv[2])),
+                                            bus::conformance::short_lease);
   try {
     bus::Participant participant(config);
     auto claims = participant.create_writer(topics::link_claim);

@@ -9,7 +9,7 @@ namespace {
 
 using std::chrono::milliseconds;
 // The last for a machine so busy that the new participant's threads wait their turn.
-constexpr std::array<milliseconds, 3> kAfter = {milliseconds(20), milliseconds(100), milliseconds(400)};
+constexpr std::array<milliseconds, 2> kAfter = {milliseconds(25), milliseconds(200)};
 
 }  // namespace
 

@@ -104,7 +104,8 @@ TEST(AllocationTest, IgnoringTheMassCentreOffsetMakesAFalseMoment) {
 TEST(AllocationTest, HoverSharesTheWeightOfTheRotors) {
   const Airframe a = legion();
   Allocator allocator(a);
-  const Allocation out = allocator.update({Vector3(0, 0, a.mass_kg * gravity_m_s2), Vector3::Zero()}, Vector3::Zero());
+  const Allocation out =
+      allocator.update({Vector3(0, 0, a.mass_kg * gravity_m_s2), Vector3::Zero()}, Vector3::Zero());
   double sum = 0;
   for (const RotorOutput& o : out.outputs()) {
     sum += o.thrust_N * std::cos(o.gimbal_rad[0]) * std::cos(o.gimbal_rad[1]);
@@ -153,7 +154,8 @@ TEST(AllocationTest, LimitsHoldAndAreReportedForAnyDemand) {
       EXPECT_LE(std::abs(o.gimbal_rad[0]), 2.0);
       EXPECT_LE(std::abs(o.gimbal_rad[1]), 2.0);
     }
-    const bool reproduced = (out.achieved_B.force - w.force).norm() + (out.achieved_B.moment - w.moment).norm() < 1e-9;
+    const bool reproduced =
+        (out.achieved_B.force - w.force).norm() + (out.achieved_B.moment - w.moment).norm() < 1e-9;
     EXPECT_NE(out.saturated(), reproduced);
   }
 }

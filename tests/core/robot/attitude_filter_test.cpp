@@ -8,7 +8,9 @@
 namespace eciton::robot {
 namespace {
 
-double tilt_error(const Matrix3& R, const Matrix3& truth) { return std::acos(std::min(1.0, R.row(2).dot(truth.row(2)))); }
+double tilt_error(const Matrix3& R, const Matrix3& truth) {
+  return std::acos(std::min(1.0, R.row(2).dot(truth.row(2))));
+}
 
 TEST(AttitudeFilterTest, FirstSampleLevelsIt) {
   AttitudeFilter filter;

@@ -25,8 +25,12 @@ PoseReference base_at(double t) {
   const Vector3 phi_t(0.3 * std::cos(t), -0.22 * std::sin(1.1 * t), 0.5);
   const Vector3 phi_tt(-0.3 * std::sin(t), -0.242 * std::cos(1.1 * t), 0);
   const AttitudeMotion attitude = attitude_motion(Matrix3::Identity(), phi, phi_t, phi_tt);
-  return {Vector3(std::sin(t), std::cos(t), t * t / 2), Vector3(std::cos(t), -std::sin(t), t),
-          Vector3(-std::sin(t), -std::cos(t), 1), attitude.R, attitude.w, attitude.alpha};
+  return {Vector3(std::sin(t), std::cos(t), t * t / 2),
+          Vector3(std::cos(t), -std::sin(t), t),
+          Vector3(-std::sin(t), -std::cos(t), 1),
+          attitude.R,
+          attitude.w,
+          attitude.alpha};
 }
 
 /// Composite mass centres and attitudes by the existing pose kinematics alone.

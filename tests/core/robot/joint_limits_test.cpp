@@ -22,7 +22,8 @@ TEST(JointLimitsTest, NamesTheJointItsValueAndItsLimit) {
   const auto fault = check_positions(a, std::array{0.0, 0.0, 0.0, -1.62});
   ASSERT_TRUE(fault);
   EXPECT_EQ(text(*fault), "member 2, joint 1: -1.620 rad is beyond its limit of 1.500 rad");
-  EXPECT_EQ(text(*check_positions(a, std::array{std::nan(""), 0.0})), "member 1, joint 0: the position is not a number");
+  EXPECT_EQ(text(*check_positions(a, std::array{std::nan(""), 0.0})),
+            "member 1, joint 0: the position is not a number");
 }
 
 TEST(JointLimitsTest, AWrongNumberOfPositionsIsRefused) {

@@ -30,8 +30,10 @@ struct Body {
     specific_force_B = R.transpose() * (a + Vector3(0, 0, gravity_m_s2));
     p += v * dt;
     const Matrix3& I = airframe.I_B_kg_m2;
-    if (!standing) w += I.inverse() * (made.moment - w.cross(I * w)) * dt;
-    else w.setZero();
+    if (!standing)
+      w += I.inverse() * (made.moment - w.cross(I * w)) * dt;
+    else
+      w.setZero();
     R = R * exp_so3(w * dt);
   }
 };
@@ -77,6 +79,24 @@ TEST(SafeDescentTest, InAChainItHoldsFirstAndFadesItsFeedForward) {
     safe.update(body.R, Vector3::Zero(), body.R.transpose() * Vector3(0, 0, gravity_m_s2), dt);
   }
   EXPECT_EQ(safe.phase(), SafePhase::descending);
+}
+
+TEST(SafeDescentTest, AloneItMayHoldItsAttitudeFirstAndLevelsOnlyThen) {
+  Body body;
+  body.p.z() = 10;
+  body.R = exp_so3({0.4, 0.3, 0.5});
+  const Matrix3 R_start = body.R;
+  SafeDescent safe({}, body.airframe.mass_kg, body.airframe.I_B_kg_m2);
+  safe.start(SafeManoeuvre::hold_then_level, body.R, 0, {});
+  const double dt = 0.002;
+  for (double t = 0; t < 1.9; t += dt) body.step(safe.update(body.R, body.w, body.specific_force_B, dt), dt);
+  EXPECT_EQ(safe.phase(), SafePhase::holding);
+  EXPECT_LT(log_so3(body.R.transpose() * R_start).norm(), 0.05);
+  EXPECT_NEAR(body.p.z(), 10, 0.1);
+  for (double t = 0; t < 4; t += dt) body.step(safe.update(body.R, body.w, body.specific_force_B, dt), dt);
+  EXPECT_EQ(safe.phase(), SafePhase::descending);
+  EXPECT_GT(body.R(2, 2), 0.999);
+  EXPECT_NEAR(body.v.z(), -0.5, 0.1);
 }
 
 TEST(SafeDescentTest, IdleUntilStartedAndGivesUpInTime) {

@@ -80,7 +80,8 @@ TEST(PoseMotionTest, ANewGoalWhileMovingJoinsOnWithoutAJump) {
   const Pose goal{Vector3(0, 1, 2), Matrix3::Identity()};
   const PoseMotion second(now, goal, t, SpeedProfile::quintic, {});
   const PoseReference joined = second.at(t);
-  EXPECT_LT((joined.p_WM - now.p_WM).norm() + (joined.v_WM - now.v_WM).norm() + (joined.a_WM - now.a_WM).norm(), 1e-9);
+  EXPECT_LT((joined.p_WM - now.p_WM).norm() + (joined.v_WM - now.v_WM).norm() + (joined.a_WM - now.a_WM).norm(),
+            1e-9);
   EXPECT_LT((joined.w_WM_M - now.w_WM_M).norm() + (joined.alpha_WM_M - now.alpha_WM_M).norm(), 1e-9);
   expect_consistent(second, 1e-5);
   const PoseReference end = second.at(1e3);

@@ -36,10 +36,10 @@ struct Seat {
 
 TEST(LatchTest, ClosesOnGeometryAlone) {
   // Axial < 6 mm, radial < 8 mm, angle < 0.2 rad; looked at after one step, before anything has moved.
-  for (const Seat& seat : {Seat{{0.0055, 0, 0}, 0, true}, Seat{{0.0065, 0, 0}, 0, false},
-                           Seat{{-0.0055, 0, 0}, 0, true}, Seat{{0, 0.0075, 0}, 0, true},
-                           Seat{{0, 0, -0.0085}, 0, false}, Seat{{0, 0.006, 0.006}, 0, false},
-                           Seat{{0, 0, 0}, 0.19, true}, Seat{{0, 0, 0}, 0.21, false}}) {
+  for (const Seat& seat :
+       {Seat{{0.0055, 0, 0}, 0, true}, Seat{{0.0065, 0, 0}, 0, false}, Seat{{-0.0055, 0, 0}, 0, true},
+        Seat{{0, 0.0075, 0}, 0, true}, Seat{{0, 0, -0.0085}, 0, false}, Seat{{0, 0.006, 0.006}, 0, false},
+        Seat{{0, 0, 0}, 0.19, true}, Seat{{0, 0, 0}, 0.21, false}}) {
     World world(still_world(), robot::legion(), nose_to_tail(seat.p_PF_m, seat.yaw_rad));
     for (const std::uint32_t id : {1U, 2U}) world.actuate(id, hover_frame(LatchCommand::engage));
     world.advance(world.now() + 1ms);
@@ -219,6 +219,55 @@ TEST(LatchTest, AnyMaleFitsAnyFemaleAndChainsForm) {
   EXPECT_EQ(world.truth_contact(1, 0)->peer_id, 2U);
   EXPECT_EQ(world.truth_contact(3, 0)->peer_id, 1U);
   EXPECT_FALSE(world.truth_contact(2, 0));
+}
+
+TEST(LatchTest, LinkedPairLandsLiesStillAndTakesOffAgain) {
+  WorldConfig config;  // honest: uneven weights, two bodies on six feet
+  World world(config, robot::legion(), nose_to_tail({0.001, 0, 0}));
+  std::vector<Pilot> pilots{{world, 1}, {world, 2}};
+  engage(pilots, LatchCommand::engage);
+  const auto move = [&](double height_m, double speed_m_s, double duration_s) {
+    const std::array<double, 2> z{pilots[0].goal.z(), pilots[1].goal.z()};
+    fly(world, pilots, duration_s, [&](double t) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        pilots[i].goal.z() = z[i] + std::copysign(std::min(std::abs(height_m), speed_m_s * t), height_m);
+      }
+    });
+  };
+  fly(world, pilots, 1);
+  move(-1.45, 0.5, 4);
+  for (const std::uint32_t id : {1U, 2U}) world.cut(id);
+  world.advance(world.now() + 1s);
+  double speed_m_s_max = 0;
+  for (int k = 0; k < 500; ++k) {
+    world.advance(world.now() + 1ms);
+    speed_m_s_max = std::max(speed_m_s_max, world.truth_pose(1).v_WB_m_s.norm());
+  }
+  EXPECT_LT(speed_m_s_max, 1e-3);
+  EXPECT_NEAR(world.truth_pose(2).X_WB.p.z(), 0.13, 2e-3);
+  move(1.0, 0.4, 4);
+  EXPECT_GT(world.truth_pose(1).X_WB.p.z(), 0.8);
+  EXPECT_EQ(world.latched_links(), 1);
+  EXPECT_FALSE(world.fault());
+}
+
+TEST(LatchTest, SixteenModulesLinkAndFallTogether) {
+  const Vector3 pitch = legion_port(0).p - legion_port(1).p + Vector3(0.001, 0, 0);
+  std::vector<ModuleStart> starts;
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    const Vector3 p = Vector3(0, 0, 0.4) + i * pitch;
+    starts.push_back({.id = i + 1, .p_WB_m = {p.x(), p.y(), p.z()}, .hovering = true});
+  }
+  World world(WorldConfig{}, robot::legion(), starts);
+  for (const ModuleStart& start : starts) world.actuate(start.id, hover_frame(LatchCommand::engage));
+  world.advance(world.now() + 300ms);
+  EXPECT_EQ(world.latched_links(), 15);
+  for (const ModuleStart& start : starts) world.cut(start.id);
+  world.advance(world.now() + 1500ms);
+  EXPECT_EQ(world.latched_links(), 15);
+  EXPECT_NEAR(world.truth_pose(8).X_WB.p.z(), 0.13, 0.01);
+  EXPECT_LT(world.truth_pose(8).v_WB_m_s.norm(), 1e-2);
+  EXPECT_FALSE(world.fault());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ using robot::Vector3;
 
 TEST(WorldTest, ModuleWithoutThrustFallsAsAStoneDoes) {
   World world(still_world(), robot::legion(), {{.id = 1, .p_WB_m = {0, 0, 5}}});
-  world.advance(from_ns(500'000'000));
+  world.advance(at_ms(500));
   // Semi-implicit steps of 1 ms: z = 5 - g (t^2 + t dt) / 2.
   const TruthPose x = world.truth_pose(1);
   EXPECT_NEAR(x.X_WB.p.z(), 5 - 9.81 * (0.25 + 0.5e-3) / 2, 1e-6);
@@ -36,7 +36,7 @@ TEST(WorldTest, LandedModuleStandsStillUnderGusts) {
   WorldConfig config;  // honest: uneven masses
   config.gust_N = 2;
   World world(config, robot::legion(), {{.id = 1}, {.id = 2, .p_WB_m = {1.5, 0, 0}, .yaw_rad = 0.3}});
-  world.advance(from_ns(1'000'000'000));
+  world.advance(at_ms(1000));
   const TruthPose before = world.truth_pose(1);
   double speed_m_s_max = 0;
   for (int k = 0; k < 5000; ++k) {
@@ -53,14 +53,14 @@ TEST(WorldTest, ImuOfALandedModuleReadsGravityFromTheFirstSampleOn) {
   World world(still_world(), robot::legion(), {{.id = 1}});
   const auto down = [&] { return world.sense(1).imu.specific_force_M_m_s2[2]; };
   EXPECT_NEAR(down(), 9.81, 0.2);  // its feet have yet to settle by some micrometres
-  world.advance(from_ns(1'000'000'000));
+  world.advance(at_ms(1000));
   EXPECT_NEAR(down(), 9.81, 1e-3);
 }
 
 TEST(WorldTest, ModuleTakesOffFromTheFloorAndHovers) {
   World world(still_world(), robot::legion(), {{.id = 1}});
   std::vector<Pilot> pilots{{world, 1}};
-  world.advance(from_ns(500'000'000));
+  world.advance(at_ms(500));
   const double z = pilots[0].goal.z();
   fly(world, pilots, 4, [&](double t) {
     pilots[0].goal.z() = z + std::min(1.0, 0.5 * t);
@@ -170,7 +170,7 @@ TEST(WorldTest, JointWithoutPowerGivesWay) {
   ActuatorFrame frame;
   frame.joints[1].position_rad = 1;
   world.actuate(1, frame);
-  world.advance(from_ns(2'000'000'000));
+  world.advance(at_ms(2000));
   EXPECT_EQ(world.truth_joint(1, 1).torque_Nm, 0);
   EXPECT_LT(std::abs(world.truth_joint(1, 1).position_rad), 0.5);
 }
@@ -179,7 +179,7 @@ TEST(WorldTest, CutStopsMotorsAndJointsOnly) {
   World world(still_world(), robot::legion(), {{.id = 1, .p_WB_m = {0, 0, 3}, .hovering = true}});
   world.actuate(1, hover_frame(LatchCommand::engage));
   world.cut(1);
-  world.advance(from_ns(300'000'000));
+  world.advance(at_ms(300));
   EXPECT_LT(world.sense(1).rotors[0].thrust_N, 0.01);
   EXPECT_EQ(world.sense(1).latches[0], LatchReading::ready);
 }

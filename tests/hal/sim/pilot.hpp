@@ -18,10 +18,10 @@ class Pilot {
     goal = world.truth_pose(module).p_WM_m;
   }
 
-  robot::Vector3 goal;                            // for M
+  robot::Vector3 goal;  // for M
   robot::Vector3 goal_velocity = robot::Vector3::Zero();
-  double integral_gain = 4;                       // of position; of attitude twice that
-  ActuatorFrame frame;                            // latches and joints are the test's to set
+  double integral_gain = 4;  // of position; of attitude twice that
+  ActuatorFrame frame;       // latches and joints are the test's to set
 
   /// Once per 2 ms.
   void act() {
@@ -38,8 +38,8 @@ class Pilot {
     const robot::Vector3 turn = -robot::log_so3(R);
     turn_integral_ += 0.002 * turn;
     const robot::Matrix3 I = robot::composite_inertia(airframe, joint_rad);
-    const robot::Vector3 moment_B =
-        I * (60 * (R.transpose() * turn) + 2 * integral_gain * (R.transpose() * turn_integral_) - 14 * x.w_WM_M_rad_s);
+    const robot::Vector3 moment_B = I * (60 * (R.transpose() * turn) +
+                                         2 * integral_gain * (R.transpose() * turn_integral_) - 14 * x.w_WM_M_rad_s);
     allocate(R.transpose() * force_W, moment_B, robot::com_offset_B(airframe, joint_rad));
     world_.actuate(module_, frame);
   }

@@ -6,6 +6,8 @@
 
 namespace eciton::hal::sim {
 
+constexpr TimePoint at_ms(std::int64_t ms) { return from_ns(1'000'000 * ms); }
+
 /// No model errors, no noise, no wind, no wakes: what a pencil can compute.
 inline WorldConfig still_world() {
   WorldConfig config;

@@ -67,8 +67,9 @@ PoseReference eight(double t) {
     return robot::log_so3(pose(at - h).R.transpose() * pose(at + h).R) / (2 * h);
   };
   const robot::Pose now = pose(t);
-  return {now.p, (pose(t + h).p - pose(t - h).p) / (2 * h), (pose(t + h).p - 2 * now.p + pose(t - h).p) / (h * h),
-          now.R, w(t),  (w(t + 1e-3) - w(t - 1e-3)) / 2e-3};
+  return {
+      now.p, (pose(t + h).p - pose(t - h).p) / (2 * h), (pose(t + h).p - 2 * now.p + pose(t - h).p) / (h * h), now.R,
+      w(t),  (w(t + 1e-3) - w(t - 1e-3)) / 2e-3};
 }
 
 PoseReference hover(double) {

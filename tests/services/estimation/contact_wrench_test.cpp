@@ -66,8 +66,8 @@ TEST(ContactWrenchTest, TwoMembersPushingInAWindByHand) {
   m[0].known = m[1].known = true;
   m[0].r_W = {0.8, 0, 0};
   m[0].port_to_next_W = m[1].port_to_last_W = {0.4, 0.1, 0};
-  m[0].external_W = {{3, 4, 0}, {0, 0, -0.3}};   // (P - r0) x (3,0,0) = (-.4,.1,0) x (3,0,0) = (0,0,-.3)
-  m[1].external_W = {{-3, 4, 0}, {0, 0, 0.3}};   // (.4,.1,0) x (-3,0,0) = (0,0,.3)
+  m[0].external_W = {{3, 4, 0}, {0, 0, -0.3}};  // (P - r0) x (3,0,0) = (-.4,.1,0) x (3,0,0) = (0,0,-.3)
+  m[1].external_W = {{-3, 4, 0}, {0, 0, 0.3}};  // (.4,.1,0) x (-3,0,0) = (0,0,.3)
   const ContactWrenches out = contact_wrenches(m);
   EXPECT_TRUE(out.complete);
   EXPECT_EQ(out.fresh, 2u);

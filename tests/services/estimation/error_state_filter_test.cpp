@@ -211,14 +211,14 @@ TEST(ErrorStateFilterTest, RefusesAndCountsWhatItCannotUse) {
   filter.update(pose_at(390, Vector3::Zero()));
   EXPECT_EQ(filter.update(pose_at(250, Vector3::Zero())), PoseVerdict::too_old);  // 128 samples kept
   EXPECT_EQ(filter.update(pose_at(420, Vector3::Zero())), PoseVerdict::too_new);
-  EXPECT_EQ(filter.update(pose_at(404, Vector3::Zero())), PoseVerdict::fused);    // a little ahead of the IMU
+  EXPECT_EQ(filter.update(pose_at(404, Vector3::Zero())), PoseVerdict::fused);  // a little ahead of the IMU
   EXPECT_EQ(filter.update(pose_at(399, {std::nan(""), 0, 0})), PoseVerdict::invalid);
   PoseMeasurement skewed = pose_at(399, Vector3::Zero());
   skewed.X_WB.R(0, 0) = 2;
   EXPECT_EQ(filter.update(skewed), PoseVerdict::invalid);
   EXPECT_FALSE(filter.update(ImuSample{399 * 2'000'000ll, {0, 0, 9.81}, Vector3::Zero()}));
-  EXPECT_FALSE(filter.update(
-      ImuSample{401 * 2'000'000ll, {0, 0, std::numeric_limits<double>::infinity()}, Vector3::Zero()}));
+  EXPECT_FALSE(
+      filter.update(ImuSample{401 * 2'000'000ll, {0, 0, std::numeric_limits<double>::infinity()}, Vector3::Zero()}));
   const FilterCounters& c = filter.counters();
   EXPECT_EQ(c.too_old, 1u);
   EXPECT_EQ(c.too_new, 1u);

@@ -44,7 +44,7 @@ struct FlightConfig {
   double claimed_share = 1;                               // of it, that the measurement admits to
   bool stamped_on_arrival = false;                        // the delay kept secret
   Vector3 attitude_bias_rad = Vector3::Zero();
-  double drift_std_m = 0, drift_time_constant_s = 10;     // Ornstein-Uhlenbeck, on the position
+  double drift_std_m = 0, drift_time_constant_s = 10;  // Ornstein-Uhlenbeck, on the position
   double accelerometer_bias_std = 0.05, gyroscope_bias_std = 0.005;
 };
 
@@ -100,8 +100,7 @@ class SimulatedFlight {
     sample.specific_force_B_m_s2 = truth.R.transpose() * (truth.a + Vector3(0, 0, robot::gravity_m_s2)) +
                                    accelerometer_bias +
                                    noise(filter_config_.accelerometer_noise_m_s2_rtHz / std::sqrt(dt));
-    sample.w_WB_B_rad_s =
-        truth.w + gyroscope_bias + noise(filter_config_.gyroscope_noise_rad_s_rtHz / std::sqrt(dt));
+    sample.w_WB_B_rad_s = truth.w + gyroscope_bias + noise(filter_config_.gyroscope_noise_rad_s_rtHz / std::sqrt(dt));
     filter.update(sample);
     const double kept = std::exp(-dt / config_.drift_time_constant_s);
     drift_ = kept * drift_ + noise(config_.drift_std_m * std::sqrt(1 - kept * kept));

@@ -1,4 +1,4 @@
-// Finds the two built-in writers that announce endpoints, and sets their times.
+// Declares the three functions of Fast DDS that it takes, weakly, and calls them where they exist.
 #include "core/bus/vendors/fastdds/fast_discovery.hpp"
 
 #include <fastdds/rtps/common/EntityId_t.hpp>
@@ -7,10 +7,15 @@
 
 namespace eprosima::fastrtps::rtps {
 
-// Of Fast DDS 2.9 itself, exported but in none of its installed headers: hence weak, and absent elsewhere.
+class RTPSParticipantImpl {
+ public:
+  [[gnu::weak]] void announceRTPSParticipantState();
+};
+
 class RTPSDomainImpl {
  public:
   [[gnu::weak]] static RTPSWriter* find_local_writer(const GUID_t& guid);
+  [[gnu::weak]] static RTPSParticipantImpl* find_local_participant(const GUID_t& guid);
 };
 
 }  // namespace eprosima::fastrtps::rtps
@@ -29,6 +34,12 @@ void hasten_discovery(const eprosima::fastdds::dds::DomainParticipant& participa
     rtps::RTPSWriter* writer = rtps::RTPSDomainImpl::find_local_writer({participant.guid().guidPrefix, entity});
     if (auto* announcer = dynamic_cast<rtps::StatefulWriter*>(writer)) announcer->updateTimes(times);
   }
+}
+
+void announce(const eprosima::fastdds::dds::DomainParticipant& participant) {
+  if (&rtps::RTPSDomainImpl::find_local_participant == nullptr) return;
+  rtps::RTPSParticipantImpl* implementation = rtps::RTPSDomainImpl::find_local_participant(participant.guid());
+  if (implementation != nullptr) implementation->announceRTPSParticipantState();
 }
 
 }  // namespace eciton::bus::fastdds

@@ -40,8 +40,8 @@ void set_discovery(rtps::BuiltinAttributes& builtin, const std::string& address,
   discovery.leaseDuration = milliseconds(lease_ms);
   discovery.leaseDuration_announcementperiod = milliseconds(lease_ms / 3);
   // A peer that starts at the same moment misses the first announcement: repeat it soon.
-  discovery.initial_announcements.count = 12;
-  discovery.initial_announcements.period = milliseconds(40);
+  discovery.initial_announcements.count = 3;
+  discovery.initial_announcements.period = milliseconds(30);
   if (peers.empty()) return;
   builtin.avoid_builtin_multicast = true;
   builtin.metatrafficUnicastLocatorList.push_back(locator(address));  // one given: no multicast one is added
@@ -116,12 +116,8 @@ void eciton_participant::on_participant_discovery(fast::DomainParticipant*, rtps
   }
 }
 
-// A participant is announced when its QoS changes: user data is the part that means nothing to anyone.
 void eciton_participant::announce() {
-  if (participant == nullptr) return;
-  fast::DomainParticipantQos qos = participant->get_qos();
-  qos.user_data().data_vec({++announcement_});
-  participant->set_qos(qos);
+  if (participant != nullptr) eciton::bus::fastdds::announce(*participant);
 }
 
 std::string eciton_participant::label() const {

@@ -1,7 +1,6 @@
 // A Fast DDS participant on one network interface, and the topics and types that its endpoints share.
 #pragma once
 
-#include <cstdint>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -33,6 +32,5 @@ struct eciton_participant final : eprosima::fastdds::dds::DomainParticipantListe
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& found) override;
   void announce();
 
-  std::uint8_t announcement_ = 0;
   eciton::bus::vendors::Reannouncer reannouncer_;
 };

@@ -56,8 +56,8 @@ int main(int count, char** arguments) {
         return told == 1 && content.size() == fleet - 1;
       },
       std::chrono::seconds(20));
-  std::printf("%s %u: heard %zu of %u, state after %.0f ms, sensor after %.0f ms\n", arguments[1], self, heard.size(),
-              fleet - 1, hello_ms, pulse_ms);
+  std::printf("%s %u: heard %zu of %u, state after %.0f ms, sensor after %.0f ms, all content after %.0f ms (%zu)\n",
+              arguments[1], self, heard.size(), fleet - 1, hello_ms, pulse_ms, elapsed_ms(), content.size());
   std::fflush(stdout);
   std::this_thread::sleep_for(std::chrono::milliseconds(100));  // the others may still need our last word
   return complete ? 0 : 1;

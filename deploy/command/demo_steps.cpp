@@ -1,0 +1,243 @@
+// The steps of a demo's flight, in their order.
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/wall_clock.hpp"
+#include "deploy/command/demo_flight.hpp"
+
+namespace eciton::deploy {
+namespace {
+
+constexpr double height_m = 1.5;
+constexpr double morph_angle_rad = 0.4;
+constexpr double morph_pitch_rad = 0.15;
+constexpr double morph_rate_rad_s = 0.12;
+constexpr double settle_s = 3;  // of a hover before it counts as one
+
+// Time-outs, on the modules' clock.
+constexpr double start_timeout_s = 20, arm_timeout_s = 10, flight_timeout_s = 30, zero_timeout_s = 20,
+                 dock_timeout_s = 60, morph_timeout_s = 30;
+
+std::string members_text(const msg::ChainView& view) {
+  std::string text;
+  for (const std::uint32_t member : view.members) text += (text.empty() ? "" : "-") + std::to_string(member);
+  return text;
+}
+
+double distance(const msg::ModuleState& a, const msg::ModuleState& b) {
+  return std::hypot(a.p_WM_m[0] - b.p_WM_m[0], a.p_WM_m[1] - b.p_WM_m[1], a.p_WM_m[2] - b.p_WM_m[2]);
+}
+
+}  // namespace
+
+template <class Make>
+DemoFlight::Goals DemoFlight::for_each_module(Make make) {
+  Goals goals;
+  for (std::size_t k = 0; k < ids_.size(); ++k) goals.push_back(make(ids_[k], k));
+  return goals;
+}
+
+std::optional<DemoFailure> DemoFlight::fly() {
+  wall_begin_ = speed_wall_ = advanced_at_ = monotonic_now();
+  std::optional<DemoFailure> failure;
+  try {
+    wait_for_modules();
+    arm_and_take_off();
+    hover_until_zeroed();
+    dock_all();
+    check_agreement();
+    morph();
+    undock_all();
+    spread_and_land();
+  } catch (const DemoFailure& failed) {
+    failure = failed;
+  }
+  result_.simulated_s = now_s();
+  result_.wall_s = to_s(monotonic_now() - wall_begin_);
+  return failure;
+}
+
+void DemoFlight::wait_for_modules() {
+  begin("modules start and find each other", DemoPhase::other);
+  const auto ready = [&](std::uint32_t id, const DemoEar& ear) {
+    const KnownModule* module = operator_.fleet().find(id);
+    return module != nullptr && module->state && module->state->mode == msg::EstimatorMode::ready &&
+           ear.flight_mode().has_value();
+  };
+  const auto all_ready = [&] {
+    return std::all_of(ears_.begin(), ears_.end(), [&](const auto& ear) { return ready(ear->id(), *ear); });
+  };
+  const auto lacks = [&] {
+    std::string text;
+    for (const auto& ear : ears_) {
+      if (ready(ear->id(), *ear)) continue;
+      text += (text.empty() ? "m" : ", m") + std::to_string(ear->id());
+    }
+    return text + " not ready (heard on the swarm ring: " + operator_.fleet().heard() + ")";
+  };
+  // Until the first state is heard there is no modules' clock to go by.
+  const Duration wall_begin = monotonic_now();
+  while (operator_.fleet().modules().empty()) {
+    pump();
+    if (monotonic_now() - wall_begin > from_s(3 * start_timeout_s))
+      fail("no module is heard", {fleet_.plans[0].name + "/world"});
+  }
+  time_begin_ = advanced_to_ = operator_.module_now();
+  wait_until(all_ready, start_timeout_s, lacks);
+}
+
+void DemoFlight::arm_and_take_off() {
+  begin("arm", DemoPhase::other);
+  finish(for_each_module([&](std::uint32_t id, std::size_t) { return operator_.arm(id); }), arm_timeout_s);
+  begin("take off", DemoPhase::other);
+  finish(for_each_module([&](std::uint32_t id, std::size_t) { return operator_.take_off(id, height_m); }),
+         flight_timeout_s);
+}
+
+void DemoFlight::hover_until_zeroed() {
+  begin("hover, while the wrench observers are zeroed", DemoPhase::other);
+  hover(settle_s);
+  for (std::size_t k = 0; k < ears_.size(); ++k) {
+    auto goal_m = fleet_.start_m[k];
+    goal_m[2] = height_m;
+    ears_[k]->set_goal(goal_m);
+  }
+  phase_ = DemoPhase::hovering;
+  const auto zeroed = [](const auto& ear) { return ear->zeroed(); };
+  wait_until([&] { return std::all_of(ears_.begin(), ears_.end(), zeroed); }, zero_timeout_s,
+             [&] {
+               std::string text = "not zeroed:";
+               for (const auto& ear : ears_) {
+                 if (!ear->zeroed()) text += " m" + std::to_string(ear->id());
+               }
+               return text;
+             });
+  hover(1);
+  for (const auto& ear : ears_) ear->set_goal(std::nullopt);
+}
+
+void DemoFlight::dock_all() {
+  for (std::size_t k = 1; k < ids_.size(); ++k) dock(ids_[k]);
+  result_.assembled = true;
+}
+
+void DemoFlight::dock(std::uint32_t follower) {
+  // The nearer end of the chain so far; its first module stands for it.
+  std::uint32_t target = ids_.front();
+  const auto& fleet = operator_.fleet();
+  if (const msg::ChainView* view = view_of(ids_.front()); view != nullptr && view->members.size() > 1) {
+    const auto far = [&](std::uint32_t id) { return distance(*fleet.find(id)->state, *fleet.find(follower)->state); };
+    const std::uint32_t front = view->members[0], back = view->members.back();
+    target = far(front) < far(back) ? front : back;
+  }
+  begin("dock " + std::to_string(follower) + " " + std::to_string(target), DemoPhase::docking);
+  const double begin_s = now_s();
+  std::uint64_t goal = 0;
+  while (true) {
+    goal = operator_.dock(follower, target);
+    follow({goal}, dock_timeout_s);
+    const GoalReport& report = *operator_.report(goal);
+    // Its bias may be measured anew after a disturbance; that takes a while in free hover.
+    const bool again = report.progress == GoalProgress::refused && report.reason.find("zero") != std::string::npos &&
+                       now_s() - begin_s < zero_timeout_s;
+    if (!again) break;
+    hover(0.5);
+  }
+  finish({goal}, dock_timeout_s);
+  const GoalReport& report = *operator_.report(goal);
+  DockingRecord record{.follower = follower,
+                       .target = target,
+                       .time_s = to_s(report.ended_at - report.accepted_at),
+                       .declared_by = {}};
+  if (const auto& docking = fleet.find(follower)->docking) {
+    record.declared_by = name_of(docking->declared_by);
+    record.recoveries = docking->recoveries;
+  }
+  result_.dockings.push_back(record);
+}
+
+void DemoFlight::check_agreement() {
+  begin("agree on the chain", DemoPhase::other);
+  const auto agree = [&] {
+    for (const std::uint32_t id : ids_) {
+      const msg::ChainView *view = view_of(id), *first = view_of(ids_.front());
+      if (view == nullptr || !view->active || view->active_epoch != first->active_epoch) return false;
+      if (view->epoch != view->active_epoch || view->members.size() != ids_.size()) return false;
+    }
+    return true;
+  };
+  wait_until(agree, flight_timeout_s, [&] {
+    std::string text = "views differ:";
+    for (const std::uint32_t id : ids_) {
+      const msg::ChainView* view = view_of(id);
+      text += " m" + std::to_string(id) + " has " + (view != nullptr ? members_text(*view) : "none");
+    }
+    return text;
+  });
+  begin("hover as one body, chain " + members_text(*view_of(ids_.front())), DemoPhase::assembled);
+  hover(settle_s);
+}
+
+void DemoFlight::morph() {
+  const std::size_t joints = 2 * ids_.size();
+  std::vector<double> bent(joints, 0.0);
+  // A bow: the yaw joints, male side, of all but the last member, and the pitch joints, female side, of all
+  // but the first; the outer ones move nothing.
+  for (std::size_t k = 0; k + 1 < ids_.size(); ++k) {
+    bent[2 * k] = morph_angle_rad;
+    bent[2 * (k + 1) + 1] = k % 2 == 0 ? morph_pitch_rad : -morph_pitch_rad;
+  }
+  begin("morph into a bow", DemoPhase::morphing);
+  finish({operator_.morph(ids_.front(), bent, morph_rate_rad_s)}, morph_timeout_s);
+  begin("and back to straight", DemoPhase::morphing);
+  finish({operator_.morph(ids_.back(), std::vector<double>(joints, 0.0), morph_rate_rad_s)}, morph_timeout_s);
+  result_.morphed = true;
+  phase_ = DemoPhase::assembled;
+  hover(1);
+}
+
+void DemoFlight::undock_all() {
+  while (true) {
+    const msg::ChainView* view = view_of(ids_.front());
+    const std::size_t members = view == nullptr ? 0 : view->members.size();
+    if (members < 2) break;
+    // The end that is not the first module leaves.
+    const bool at_back = view->members.back() != ids_.front();
+    const std::uint32_t leaving = at_back ? view->members.back() : view->members[0];
+    const std::uint32_t staying = at_back ? view->members[members - 2] : view->members[1];
+    begin("undock " + std::to_string(leaving) + " " + std::to_string(staying), DemoPhase::other);
+    finish({operator_.undock(leaving, staying)}, flight_timeout_s);
+    const auto apart = [&] {
+      const msg::ChainView *left = view_of(leaving), *rest = view_of(ids_.front());
+      return left->members.size() < 2 && rest->members.size() < members && left->epoch == left->active_epoch &&
+             rest->epoch == rest->active_epoch;
+    };
+    wait_until(apart, flight_timeout_s, [&] { return "the chain is still " + members_text(*view_of(ids_.front())); });
+    hover(1);
+  }
+  const auto loose = [](const auto& ear) { return !ear->latched(); };
+  wait_until([&] { return std::all_of(ears_.begin(), ears_.end(), loose); }, 5, [] { return "a latch still holds"; });
+  result_.separated = true;
+}
+
+void DemoFlight::spread_and_land() {
+  begin("go back and hover", DemoPhase::other);
+  const auto home = [&](std::size_t k) { return std::array{fleet_.start_m[k][0], fleet_.start_m[k][1], height_m}; };
+  finish(for_each_module([&](std::uint32_t id, std::size_t k) { return operator_.go_to(id, home(k), 0, 0); }),
+         flight_timeout_s);
+  hover(settle_s);
+  for (std::size_t k = 0; k < ears_.size(); ++k) ears_[k]->set_goal(home(k));
+  phase_ = DemoPhase::hovering;
+  hover(2);
+  for (const auto& ear : ears_) ear->set_goal(std::nullopt);
+  begin("land", DemoPhase::other);
+  finish(for_each_module([&](std::uint32_t id, std::size_t) { return operator_.land(id); }), flight_timeout_s);
+  begin("disarm", DemoPhase::other);
+  Goals goals;
+  for (const auto& ear : ears_) {
+    if (ear->flight_mode() != msg::FlightMode::disarmed) goals.push_back(operator_.disarm(ear->id()));
+  }
+  if (!goals.empty()) finish(goals, arm_timeout_s);
+}
+
+}  // namespace eciton::deploy

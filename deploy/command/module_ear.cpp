@@ -1,0 +1,40 @@
+// Keeps this module's own samples; peers' come over the radio and are theirs.
+#include "deploy/command/module_ear.hpp"
+
+#include "core/base/wall_clock.hpp"
+
+namespace eciton::deploy {
+
+ModuleEar::ModuleEar(const bus::ParticipantConfig& config)
+    : participant_(config),
+      heartbeat_reader_(participant_.create_reader(topics::heartbeat)),
+      state_reader_(participant_.create_reader(topics::module_state)),
+      docking_reader_(participant_.create_reader(topics::docking_state)),
+      view_reader_(participant_.create_reader(topics::chain_view)) {}
+
+void ModuleEar::poll() {
+  const Duration now = monotonic_now();
+  while (const auto beat = heartbeat_reader_.take()) {
+    heartbeats_[std::string(beat->value.service.view())] = {beat->value, now};
+  }
+  // Heartbeats stay on their ring, so they say whose ring this is.
+  if (heartbeats_.empty()) return;
+  const std::uint32_t own = heartbeats_.begin()->second.beat.module_id;
+  while (const auto state = state_reader_.take()) {
+    if (state->value.module_id == own) state_ = state->value;
+  }
+  while (const auto docking = docking_reader_.take()) {
+    if (docking->value.module_id == own) docking_ = docking->value;
+  }
+  while (const auto view = view_reader_.take()) {
+    if (view->value.module_id == own) view_ = view->value;
+  }
+}
+
+std::optional<msg::FlightMode> ModuleEar::flight_mode() const {
+  const auto control = heartbeats_.find("control");
+  if (control == heartbeats_.end()) return std::nullopt;
+  return control->second.beat.flight_mode;
+}
+
+}  // namespace eciton::deploy

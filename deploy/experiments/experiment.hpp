@@ -1,0 +1,60 @@
+// An experiment: one deterministic run of the whole simulated system for a seed, and the figures it gives.
+// Metrics without a suffix are the physics' truth, ..._estimated what the services believed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "deploy/simulation.hpp"
+
+namespace eciton::deploy {
+
+struct ExperimentConfig {
+  std::uint64_t seed = 1;
+  std::uint32_t trials = 1;
+  std::uint32_t modules = 0;       // 0: as many as the experiment needs
+  std::string break_what;          // a control that must fail
+  SimulationConfig simulation;
+
+  template <class V>
+  void visit_fields(V& v) {
+    v("modules", modules, in_range(0, 16));
+    v("world", simulation.world);
+    v("radio_link", simulation.radio_link);
+    v("module", simulation.module);
+  }
+};
+
+/// Flat names and series of one trial, or of all.
+struct Figures {
+  std::map<std::string, double> metrics;
+  std::map<std::string, std::vector<double>> series;
+};
+
+struct Experiment {
+  std::string name;
+  std::string summary;
+  std::uint32_t modules;             // when the config does not say
+  bool has_trials;
+  std::vector<std::string> breaks;   // what --break understands
+  Figures (*run_trial)(const ExperimentConfig& config, std::uint32_t trial);
+  /// From all trials' figures, in their order.
+  Figures (*summarise)(const std::vector<Figures>& trials);
+};
+
+const std::vector<Experiment>& experiments();
+extern const Experiment hover_experiment;
+extern const Experiment docking_experiment;
+
+/// Runs the trials in so many processes; the figures do not depend on how many. `progress` is called with the
+/// number of finished trials. Throws BadInput, or std::runtime_error when a trial broke down.
+Figures run_experiment(const Experiment& experiment, const ExperimentConfig& config, std::uint32_t jobs,
+                       const std::function<void(std::uint32_t)>& progress);
+
+/// The seed of one trial of a run: trials are independent and can be replayed alone.
+std::uint64_t trial_seed(std::uint64_t seed, std::uint32_t trial);
+
+}  // namespace eciton::deploy

@@ -1,0 +1,41 @@
+// Flies a simulated fleet by the goals an operator would send: runs the simulation until what was asked for
+// has happened, or its time is up.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "deploy/operator/operator.hpp"
+#include "deploy/simulation.hpp"
+
+namespace eciton::deploy {
+
+class Pilot {
+ public:
+  explicit Pilot(Simulation& simulation);
+
+  /// Runs on for so long.
+  void wait(double duration_s);
+  /// Runs until `done` holds, at most so long; whether it holds.
+  bool wait_until(const std::function<bool()>& done, double limit_s);
+  /// Runs until the goal is over, at most so long; how it ended.
+  GoalProgress follow(std::uint64_t goal, double limit_s);
+
+  /// Arms all modules, takes them off to their heights, and lets them hover until their observers are zeroed.
+  /// Throws std::runtime_error naming the module and the step that failed.
+  void bring_to_hover(const std::vector<double>& heights_m);
+  /// Docks, asking again while it is refused for want of zeroing. The report of the last goal.
+  GoalReport dock(std::uint32_t follower, std::uint32_t target, double limit_s);
+
+  Operator& op() { return operator_; }
+  const KnownFleet& fleet() const { return operator_.fleet(); }
+
+ private:
+  void expect_success(const std::vector<std::uint64_t>& goals, double limit_s);
+
+  Simulation& simulation_;
+  Operator operator_;
+};
+
+}  // namespace eciton::deploy

@@ -1,0 +1,109 @@
+// Trials in processes of their own: the simulated network is one per process, and a trial that crashes takes
+// nothing with it.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "deploy/experiments/experiment.hpp"
+
+namespace eciton::deploy {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Worker {
+  pid_t pid;
+  int pipe;
+  std::uint32_t trial;
+};
+
+void write_all(int fd, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t wrote = ::write(fd, text.data() + at, text.size() - at);
+    if (wrote <= 0) return;
+    at += static_cast<std::size_t>(wrote);
+  }
+}
+
+/// In the child: the trial's figures, or what went wrong, as JSON. Doubles survive to the bit.
+std::string run_to_text(const Experiment& experiment, const ExperimentConfig& config, std::uint32_t trial) {
+  Json out;
+  try {
+    const Figures figures = experiment.run_trial(config, trial);
+    out["metrics"] = figures.metrics;
+    out["series"] = figures.series;
+  } catch (const BadInput& bad) {
+    out["bad_input"] = bad.error.message;
+  } catch (const std::exception& e) {
+    out["error"] = e.what();
+  }
+  return out.dump();
+}
+
+Worker start(const Experiment& experiment, const ExperimentConfig& config, std::uint32_t trial) {
+  int ends[2];
+  if (::pipe(ends) != 0) throw std::runtime_error("no pipe for a trial's process: too many open files");
+  std::fflush(nullptr);
+  const pid_t pid = ::fork();
+  if (pid < 0) throw std::runtime_error("no process for a trial: the system refuses to fork");
+  if (pid == 0) {
+    ::close(ends[0]);
+    write_all(ends[1], run_to_text(experiment, config, trial));
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  return {pid, ends[0], trial};
+}
+
+Figures finish(const Worker& worker) {
+  std::string text;
+  char block[4096];
+  for (ssize_t got = 0; (got = ::read(worker.pipe, block, sizeof block)) > 0;) {
+    text.append(block, static_cast<std::size_t>(got));
+  }
+  ::close(worker.pipe);
+  int status = 0;
+  ::waitpid(worker.pid, &status, 0);
+  const std::string which = "trial " + std::to_string(worker.trial);
+  const Json out = Json::parse(text, nullptr, false);
+  if (out.is_discarded()) throw std::runtime_error(which + " ended without a result");
+  if (out.contains("bad_input")) throw BadInput{{out["bad_input"].get<std::string>()}};
+  if (out.contains("error")) throw std::runtime_error(which + ": " + out["error"].get<std::string>());
+  return {out["metrics"].get<std::map<std::string, double>>(),
+          out["series"].get<std::map<std::string, std::vector<double>>>()};
+}
+
+}  // namespace
+
+const std::vector<Experiment>& experiments() {
+  static const std::vector<Experiment> all{hover_experiment, docking_experiment};
+  return all;
+}
+
+std::uint64_t trial_seed(std::uint64_t seed, std::uint32_t trial) {
+  // splitmix64, so that neighbouring seeds and trials share nothing.
+  std::uint64_t z = seed * 0x9e3779b97f4a7c15ull + (trial + 1) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return z ^ (z >> 31);
+}
+
+Figures run_experiment(const Experiment& experiment, const ExperimentConfig& config, std::uint32_t jobs,
+                       const std::function<void(std::uint32_t)>& progress) {
+  std::vector<Figures> results(config.trials);
+  std::vector<Worker> running;
+  std::uint32_t next = 0, finished = 0;
+  while (finished < config.trials) {
+    while (next < config.trials && running.size() < jobs) running.push_back(start(experiment, config, next++));
+    // The oldest first: trials take about the same time.
+    results[running.front().trial] = finish(running.front());
+    running.erase(running.begin());
+    progress(++finished);
+  }
+  return experiment.summarise(results);
+}
+
+}  // namespace eciton::deploy

@@ -1,0 +1,142 @@
+// Docking: goals to the follower's and the target's sequences, their references to control, their latches to
+// the hardware, and the chain's membership.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/base/config.hpp"
+#include "core/bus/participant.hpp"
+#include "core/robot/kinematics.hpp"
+#include "core/runtime/service.hpp"
+#include "services/docking/dock_request.hpp"
+#include "services/docking/docking_sequence.hpp"
+#include "services/docking/membership_service.hpp"
+#include "services/docking/target_sequence.hpp"
+
+namespace eciton::docking {
+
+struct DockingServiceConfig {
+  std::uint32_t module_id = 0;
+  std::uint64_t incarnation = 1;
+  double rate_Hz = 100;
+  double state_rate_Hz = 20;        // of docking_state while docking; it is published on every change besides
+  double target_filter_s = 0.2;     // the reference follows the target's pose smoothed by this
+  double push_bias_s = 1.0;         // the push before contact, smoothed by this, counts as none
+  bool require_zeroed = true;
+  bool claims_muted = false;        // an experiment's control
+  DockingConfig sequence;
+  TargetConfig target;
+
+  template <class V>
+  void visit_fields(V& v) {
+    v("rate_Hz", rate_Hz, in_range(20, 500));
+    v("state_rate_Hz", state_rate_Hz, in_range(1, 100));
+    v("target_filter_s", target_filter_s, in_range(0, 5));
+    v("push_bias_s", push_bias_s, in_range(0.05, 10));
+    v("require_zeroed", require_zeroed);
+    v("claims_muted", claims_muted);
+    v("standoff_m", sequence.standoff_m, in_range(0.1, 2));
+    v("approach_speed_m_s", sequence.approach_speed_m_s, in_range(0.02, 1));
+    v("recover_radial_m", sequence.recover_radial_m, in_range(0.01, 0.2));
+    v("declare_push_N", sequence.declare_push_N, in_range(0.5, 20));
+    v("recoveries_max", sequence.recoveries_max, in_range(0, 100));
+    v("retreat_speed_m_s", sequence.retreat_speed_m_s, in_range(0.02, 1));
+    v("retreat_gap_m", sequence.retreat_gap_m, in_range(0.1, 2));
+  }
+};
+
+class DockingService final : public runtime::Service {
+ public:
+  DockingService(bus::Participant& ring, const DockingServiceConfig& config, const robot::Airframe& airframe);
+
+  std::string_view name() const override { return "docking"; }
+  runtime::Schedule schedule() override {
+    return runtime::every(from_s(1 / config_.rate_Hz), runtime::Phase::coordinate);
+  }
+  void step(TimePoint now) noexcept override;
+
+ private:
+  /// A module as we hear of it; ourselves too.
+  struct Module {
+    std::uint32_t id = 0;
+    TimePoint heard{};
+    TimePoint state_at{};
+    msg::ModuleState state;
+    msg::DockingState docking;
+    std::array<double, robot::joints_max> joint_rad{};
+    bool flying = false;
+    bool zeroed = false;
+    std::optional<Duration> clock_offset;
+  };
+  /// What joins the follower's port to the target's.
+  struct Pairing {
+    std::uint32_t peer = 0;
+    std::uint32_t port = 0;
+    std::uint32_t peer_port = 0;
+  };
+
+  Module* find(std::uint32_t id) noexcept;
+  Module& own() { return modules_[0]; }
+  bool is_fresh(const Module& module, TimePoint now) const;
+  bool near() const;
+
+  void take(TimePoint now) noexcept;
+  void take_beacons() noexcept;
+  void take_goals(TimePoint now) noexcept;
+  void dock(const msg::DockGoal& goal, TimePoint now) noexcept;
+  void undock(const msg::DockGoal& goal, TimePoint now) noexcept;
+  void follow(TimePoint now, double dt_s) noexcept;
+  void be_target(TimePoint now, double dt_s) noexcept;
+  void track_target(TimePoint now, double dt_s) noexcept;
+  void update_membership(TimePoint now) noexcept;
+  void write_reference(TimePoint now) noexcept;
+  void tell_latch(std::uint32_t port, bool engage, TimePoint now) noexcept;
+  void write_state(TimePoint now) noexcept;
+  void answer(std::uint64_t correlation_id, msg::GoalPhase phase, std::string_view reason, TimePoint now) noexcept;
+
+  robot::Pose port_pose_W(const Module& module, std::uint32_t port, const robot::Pose& X_WB) const;
+  robot::Pose body_pose_W(const Module& module, TimePoint now) const;
+  Candidate candidate(const Module* module, std::uint32_t id, TimePoint now) const;
+  void add_free_ports(std::uint32_t module_id, TimePoint now, BoundedVector<FreePort, 2 * robot::members_max>& ports);
+
+  DockingServiceConfig config_;
+  robot::Airframe airframe_;
+  Membership membership_;
+  DockingSequence follower_;
+  TargetSequence target_;
+  std::array<Module, 33> modules_{};  // ourselves first
+  robot::Wrench external_W_;
+
+  Pairing pairing_;                   // of the docking we follow or are the target of
+  bool following_ = false;
+  bool is_target_ = false;
+  std::uint64_t goal_id_ = 0;
+  std::uint64_t answered_ = 0;
+  bool goal_pending_ = false;
+  robot::Pose X_WT_;                  // the target's port, smoothed
+  bool X_WT_known_ = false;
+  double push_bias_N_ = 0;
+  double push_N_ = 0;
+  std::array<std::optional<bool>, chain::max_ports> latch_told_{};
+  std::array<TimePoint, chain::max_ports> latch_told_at_{};
+  msg::DockingState state_;
+  TimePoint state_due_{};
+  TimePoint last_step_{};
+  bool first_step_ = true;
+
+  bus::Reader<msg::DockGoal> dock_goal_;
+  bus::Reader<msg::ModuleState> module_states_;
+  bus::Reader<msg::JointState> joint_states_;
+  bus::Reader<msg::ExternalWrench> external_wrenches_;
+  bus::Reader<msg::DockingState> docking_states_;
+  bus::Reader<msg::Beacon> beacons_;
+  bus::Reader<msg::Heartbeat> heartbeats_;
+  bus::Writer<msg::FlightGoal> flight_goal_;
+  bus::Writer<msg::LatchCommand> latch_command_;
+  bus::Writer<msg::DockingState> docking_state_;
+  bus::Writer<msg::GoalStatus> goal_status_;
+  bus::Writer<msg::Event> event_;
+};
+
+}  // namespace eciton::docking
