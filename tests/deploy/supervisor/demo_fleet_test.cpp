@@ -77,7 +77,9 @@ TEST_F(DemoFleetTest, AlternatesVendorsWithinAndAcrossModules) {
     const auto& processes_of = fleet->plans[m].processes;
     for (std::size_t k = 1; k < processes_of.size(); ++k) {
       EXPECT_NE(processes_of[k].vendor, processes_of[k - 1].vendor);
-      if (m > 1) EXPECT_NE(processes_of[k].vendor, fleet->plans[m - 1].processes[k].vendor);
+      if (m > 1) {
+        EXPECT_NE(processes_of[k].vendor, fleet->plans[m - 1].processes[k].vendor);
+      }
     }
   }
 }
