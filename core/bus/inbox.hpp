@@ -21,9 +21,7 @@ struct ReaderStatistics {
   std::uint64_t dropped_expired = 0;    // older than the topic's lifespan when taken
   std::uint64_t dropped_overflow = 0;   // over the queue's bound
 
-  std::uint64_t dropped() const {
-    return dropped_malformed + dropped_late + dropped_expired + dropped_overflow;
-  }
+  std::uint64_t dropped() const { return dropped_malformed + dropped_late + dropped_expired + dropped_overflow; }
 };
 
 template <Message T>
@@ -31,17 +29,12 @@ class Inbox {
  public:
   /// `keep_last`: 1 replaces the queued sample of the same key; more queues them all up to `capacity`.
   Inbox(std::size_t keep_last, std::size_t capacity, bool ordered)
-      : keep_last_(keep_last), ordered_(ordered), slots_(capacity), newest_(ordered ? capacity : 0) {}
+      : keep_last_(keep_last), ordered_(ordered), slots_(capacity + 1), newest_(ordered ? capacity : 0) {}
 
   /// Returns the queued sample, nullptr if it was dropped.
   const T* push(std::span<const std::uint8_t> cdr, ReaderStatistics& statistics) {
     ++statistics.received;
-    // Decoded in place: a slot that stays free when the sample is not wanted.
-    if (count_ == slots_.size()) {
-      first_ = next(first_, 1);
-      --count_;
-      ++statistics.dropped_overflow;
-    }
+    // Decoded in place, into the slot that is always free: nothing gives way to a sample that is not wanted.
     Slot& slot = slots_[next(first_, count_)];
     if (!decode(cdr, slot.value)) {
       ++statistics.dropped_malformed;
@@ -60,6 +53,11 @@ class Inbox {
         ++statistics.replaced;
         return &queued.value;
       }
+    }
+    if (count_ + 1 == slots_.size()) {
+      first_ = next(first_, 1);
+      --count_;
+      ++statistics.dropped_overflow;
     }
     ++count_;
     return &slot.value;

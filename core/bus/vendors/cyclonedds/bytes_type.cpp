@@ -26,7 +26,10 @@ constexpr std::size_t padded(std::size_t size) { return (size + 3) & ~std::size_
 
 /// Room for `size` bytes, the padding to a multiple of 4 that goes on the wire set to zero.
 BytesSerdata* new_serdata(const ddsi_sertype* sertype, ddsi_serdata_kind kind, std::size_t size) {
-  void* memory = BytesPool::instance().acquire(sizeof(BytesSerdata) + padded(size));
+  // Of the class that was reserved: a short string or sequence must not ask for blocks of another.
+  const std::size_t block =
+      kind == SDK_KEY ? sizeof(BytesSerdata) + padded(size) : sample_block_size(type_of(sertype));
+  void* memory = BytesPool::instance().acquire(block);
   if (memory == nullptr) return nullptr;
   auto* serdata = new (memory) BytesSerdata{};
   ddsi_serdata_init(serdata, sertype, kind);
