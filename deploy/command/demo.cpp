@@ -42,7 +42,8 @@ void check_output_paths(const DemoOptions& options) {
   if (options.json_file.empty()) return;
   const auto parent = std::filesystem::absolute(options.json_file).parent_path();
   if (::access(parent.c_str(), W_OK) != 0) {
-    throw BadInput{{"--json " + options.json_file + ": directory " + parent.string() + " is not there or not writable"}};
+    throw BadInput{
+        {"--json " + options.json_file + ": directory " + parent.string() + " is not there or not writable"}};
   }
 }
 
