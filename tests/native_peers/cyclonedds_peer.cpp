@@ -53,8 +53,8 @@ template <class Sample>
 class CycloneChannel final : public Channel {
  public:
   CycloneChannel(dds_entity_t participant, const char* topic, const dds_topic_descriptor_t& descriptor,
-                 std::uint64_t type, TopicQos qos)
-      : participant_(participant), name_(topic), descriptor_(descriptor), type_(type), qos_(qos) {
+                 TopicQos qos)
+      : participant_(participant), name_(topic), descriptor_(descriptor), qos_(qos) {
     topic_ = dds_create_topic(participant, &descriptor, topic, nullptr, nullptr);
     if (topic_ < 0) std::exit(1);
   }
@@ -118,12 +118,12 @@ class CycloneChannel final : public Channel {
   }
   Sample filled(std::uint64_t seed) const {
     Sample sample{};
-    Fill fill(type_, seed);
+    Fill fill(name_, seed);
     visit_fields(fill, sample);
     return sample;
   }
   bool matches(Sample& sample, std::uint64_t seed) const {
-    Compare compare(type_, seed);
+    Compare compare(name_, seed);
     visit_fields(compare, sample);
     return compare.equal();
   }
@@ -131,7 +131,6 @@ class CycloneChannel final : public Channel {
   dds_entity_t participant_;
   const char* name_;
   const dds_topic_descriptor_t& descriptor_;
-  std::uint64_t type_;
   TopicQos qos_;
   dds_entity_t topic_ = 0;
   dds_entity_t writer_ = 0;
@@ -143,7 +142,7 @@ Channels channels(std::uint32_t domain) {
   Channels all;
 #define TOPIC(name, type, reliable, transient_local, depth)                                          \
   all.push_back(std::make_unique<CycloneChannel<eciton_msg_##type>>(                                 \
-      participant, #name, eciton_msg_##type##_desc, all.size(), TopicQos{reliable, transient_local, depth}));
+      participant, #name, eciton_msg_##type##_desc, TopicQos{reliable, transient_local, depth}));
 #include "tests/native_peers/topics.def"
 #undef TOPIC
   return all;

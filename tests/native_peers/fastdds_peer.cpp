@@ -59,8 +59,8 @@ Node join(std::uint32_t domain) {
 template <class Sample, class PubSubType>
 class FastChannel final : public Channel {
  public:
-  FastChannel(const Node& node, const char* topic, std::uint64_t type, TopicQos qos)
-      : node_(node), name_(topic), type_(type), qos_(qos), support_(new PubSubType) {}
+  FastChannel(const Node& node, const char* topic, TopicQos qos)
+      : node_(node), name_(topic), qos_(qos), support_(new PubSubType) {}
 
   const char* topic() const override { return name_; }
   std::vector<std::uint8_t> bytes(std::uint64_t seed) override {
@@ -112,19 +112,18 @@ class FastChannel final : public Channel {
   }
   Sample filled(std::uint64_t seed) const {
     Sample sample;
-    Fill fill(type_, seed);
+    Fill fill(name_, seed);
     visit_fields(fill, sample);
     return sample;
   }
   bool matches(Sample& sample, std::uint64_t seed) const {
-    Compare compare(type_, seed);
+    Compare compare(name_, seed);
     visit_fields(compare, sample);
     return compare.equal();
   }
 
   Node node_;
   const char* name_;
-  std::uint64_t type_;
   TopicQos qos_;
   fast::TypeSupport support_;
   fast::DataWriter* writer_ = nullptr;
@@ -136,7 +135,7 @@ Channels channels(std::uint32_t domain) {
   Channels all;
 #define TOPIC(name, type, reliable, transient_local, depth)                                                  \
   all.push_back(std::make_unique<FastChannel<eciton::msg::type, eciton::msg::type##PubSubType>>(             \
-      node, #name, all.size(), TopicQos{reliable, transient_local, depth}));
+      node, #name, TopicQos{reliable, transient_local, depth}));
 #include "tests/native_peers/topics.def"
 #undef TOPIC
   return all;

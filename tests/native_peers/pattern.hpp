@@ -3,15 +3,19 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace eciton::native_peers {
 
 /// Seeds a peer works with: 0 has everything at its greatest length, 1 everything empty.
 inline constexpr std::uint64_t kSeeds = 4;
 
+/// Draws differently for every topic and seed.
 class Pattern {
  public:
-  Pattern(std::uint64_t type, std::uint64_t seed) : seed_(seed), state_(type * 1000003 + seed) {}
+  Pattern(std::string_view topic, std::uint64_t seed) : seed_(seed), state_(seed) {
+    for (const char character : topic) state_ = state_ * 1099511628211u + static_cast<unsigned char>(character);
+  }
 
   std::uint64_t number() {  // splitmix64
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);

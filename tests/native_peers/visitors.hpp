@@ -31,7 +31,7 @@ concept IsArray = !IsText<T> && (std::is_array_v<T> || requires { std::tuple_siz
 template <class Derived>
 class PatternWalk {
  public:
-  PatternWalk(std::uint64_t type, std::uint64_t seed) : pattern_(type, seed) {}
+  PatternWalk(const char* topic, std::uint64_t seed) : pattern_(topic, seed) {}
 
   template <class T>
   void operator()(T& field, std::uint32_t limit) {
