@@ -89,8 +89,12 @@ void merge(TreeNode& into, TreeNode&& layer) {
 template <class TreeNode>
 void emit(YAML::Emitter& out, const TreeNode& node) {
   switch (node.kind) {
-    case TreeNode::Kind::none: out << YAML::Null; break;
-    case TreeNode::Kind::scalar: out << node.scalar; break;
+    case TreeNode::Kind::none:
+      out << YAML::Null;
+      break;
+    case TreeNode::Kind::scalar:
+      out << node.scalar;
+      break;
     case TreeNode::Kind::list:
       out << YAML::Flow << YAML::BeginSeq;
       for (const auto& element : node.list) emit(out, element);
@@ -123,10 +127,12 @@ Status ConfigTree::add_text(const std::string& yaml, const std::string& origin) 
 
 Status ConfigTree::add_file(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "r");
-  if (file == nullptr) return Error{"config file " + path + " cannot be read: it does not exist or may not be opened"};
+  if (file == nullptr)
+    return Error{"config file " + path + " cannot be read: it does not exist or may not be opened"};
   std::string text;
   std::array<char, 4096> block{};
-  for (std::size_t got = 0; (got = std::fread(block.data(), 1, block.size(), file)) > 0;) text.append(block.data(), got);
+  for (std::size_t got = 0; (got = std::fread(block.data(), 1, block.size(), file)) > 0;)
+    text.append(block.data(), got);
   std::fclose(file);
   return add_text(text, path);
 }

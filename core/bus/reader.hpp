@@ -47,11 +47,8 @@ class Reader {
 
   /// Samples of other modules are delivered as ever, but are no news: they trigger no step and do not put off
   /// overdue(). For topics whose peers' samples the radio puts on the ring.
-  void news_only_of(std::uint32_t module_id)
-    requires requires(T sample) { sample.module_id; }
-  {
-    core_->news_of = module_id;
-  }
+  void news_only_of(std::uint32_t module_id) requires requires(T sample) { sample.module_id; }
+  { core_->news_of = module_id; }
 
   /// Whether the newest sample that came is older than the topic's deadline, or none came yet.
   bool overdue() const { return core_->participant().now() - core_->newest_stamp() > core_->topic().deadline; }

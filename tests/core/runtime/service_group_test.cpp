@@ -44,8 +44,8 @@ TEST_F(ServiceGroupTest, SkipsWholePeriodsAndKeepsTheGrid) {
 
 TEST_F(ServiceGroupTest, OnTheWallClockASampleThatIsALittleLateIsNotPrecededByATimeOut) {
   for (const auto& [pacing, after_sample] : {std::pair{GroupPacing::wall_clock, 2500us},
-                                            {GroupPacing::lockstep, 2000us},
-                                            {GroupPacing::simulated, 2000us}}) {
+                                             {GroupPacing::lockstep, 2000us},
+                                             {GroupPacing::simulated, 2000us}}) {
     bus::Reader<msg::Imu> reader = ring_->create_reader(topics::imu);
     bus::Writer<msg::Imu> writer = ring_->create_writer(topics::imu);
     ServiceGroup group({.heartbeat_period = 0ms}, {ring_.get()}, pacing);

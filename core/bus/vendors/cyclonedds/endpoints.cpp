@@ -47,8 +47,8 @@ Result<dds_entity_t> create_topic(const eciton_participant& participant, const c
       dds_create_topic_sertype(participant.participant.get(), name, &sertype, nullptr, nullptr, nullptr);
   if (topic > 0) return topic;
   ddsi_sertype_unref(sertype);
-  return Error{participant.label() + ": Cyclone DDS cannot create topic \"" + name + "\" of type " + type.name + ": " +
-               dds_strretcode(-topic)};
+  return Error{participant.label() + ": Cyclone DDS cannot create topic \"" + name + "\" of type " + type.name +
+               ": " + dds_strretcode(-topic)};
 }
 
 Error cannot_create(const eciton_participant& participant, const char* what, const char* topic, dds_entity_t code) {
