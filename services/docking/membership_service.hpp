@@ -47,7 +47,7 @@ class Membership {
   };
 
   void take(TimePoint now) noexcept;
-  void claim(std::uint32_t port) noexcept;
+  void claim(std::uint32_t port, TimePoint now) noexcept;
   void publish(TimePoint now) noexcept;
 
   MembershipConfig config_;
@@ -63,6 +63,7 @@ class Membership {
   std::uint64_t published_epoch_ = 0;
   bool published_active_ = false;
   TimePoint repeat_due_{};
+  std::optional<TimePoint> started_;
 
   bus::Reader<msg::LatchState> latch_state_;
   bus::Reader<msg::LinkClaim> link_claims_;
