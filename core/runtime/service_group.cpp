@@ -39,6 +39,8 @@ ServiceGroup::ServiceGroup(const ExecutorConfig& config, std::vector<bus::Partic
   }
   if (config_.heartbeat_period > Duration::zero()) {
     heartbeat_.emplace(module_ring().create_writer(topics::heartbeat));
+    beacon_.emplace(module_ring().create_reader(topics::beacon));
+    beacon_->trigger().set_wakes(false);
   }
 }
 
@@ -129,6 +131,7 @@ Pace ServiceGroup::step(Entry& entry, Pace at, TimePoint now) noexcept {
 void ServiceGroup::beat_if_due(Pace at, TimePoint now) noexcept {
   if (at < next_heartbeat_) return;
   next_heartbeat_ += ((at - next_heartbeat_) / config_.heartbeat_period + 1) * config_.heartbeat_period;
+  learn_clock_offsets();
   std::uint64_t dropped = 0;
   for (const bus::Participant* participant : participants_) dropped += participant->dropped();
   for (const auto& entry : entries_) {
@@ -147,6 +150,19 @@ Pace ServiceGroup::next_step_due() const noexcept {
   Pace next = Pace::max();
   for (const auto& entry : entries_) next = std::min(next, entry->next_due);
   return next;
+}
+
+void ServiceGroup::learn_clock_offsets() noexcept {
+  // So that every process turns a peer's stamps into ages as the radio does.
+  while (const auto beacon = beacon_->take()) {
+    if (beacon->value.module_id != config_.module_id) continue;
+    for (const msg::PeerEcho& peer : beacon->value.peers) {
+      if (peer.offset_bound_ns < 0) continue;
+      for (bus::Participant* participant : participants_) {
+        participant->set_clock_offset(peer.module_id, Duration{peer.offset_ns});
+      }
+    }
+  }
 }
 
 Pace ServiceGroup::next_due() const noexcept { return std::min(next_step_due(), next_heartbeat_); }

@@ -86,12 +86,14 @@ class ServiceGroup {
 
  private:
   void fill_constant_fields(Entry& entry);
+  void learn_clock_offsets() noexcept;
 
   ExecutorConfig config_;
   std::vector<bus::Participant*> participants_;
   Pacing pacing_;
   std::vector<std::unique_ptr<Entry>> entries_;
   std::optional<bus::Writer<msg::Heartbeat>> heartbeat_;
+  std::optional<bus::Reader<msg::Beacon>> beacon_;  // our module's own, which knows how the peers' clocks stand
   Pace next_heartbeat_ = Pace::max();
 };
 

@@ -2,6 +2,7 @@
 // Usage: module_state_reader_fastdds DOMAIN [SECONDS]. A module's own ring is domain 10 + its id, on loopback.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fastdds/dds/domain/DomainParticipant.hpp>

@@ -47,7 +47,7 @@ TEST_F(DemoFleetTest, RunsTwoProcessesAModuleWhenComposed) {
   ASSERT_TRUE(fleet.ok()) << fleet.error().message;
   EXPECT_EQ(processes(*fleet), 5u);
   const auto& arguments = fleet->plans[1].processes[1].child.arguments;
-  EXPECT_EQ((std::vector<std::string>(arguments.begin() + 3, arguments.end())),
+  EXPECT_EQ((std::vector<std::string>(arguments.begin() + 1, arguments.begin() + 6)),
             (std::vector<std::string>{"estimation", "control", "docking", "joints", "radio"}));
 }
 
