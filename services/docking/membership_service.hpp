@@ -17,6 +17,7 @@ struct MembershipConfig {
   std::uint64_t incarnation = 1;
   std::uint32_t ports = 2;
   bool claims_muted = false;  // an experiment's control: claims are made but never published
+  double listen_s = 0.5;      // after a start, before somebody's claim is believed to name our port's peer
   double repeat_s = 1.0;      // what is announced is said again so often: a late listener needs no history
 };
 
