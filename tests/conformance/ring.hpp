@@ -58,7 +58,7 @@ inline ParticipantConfig config_of(const std::string& vendor, std::uint32_t doma
 /// Polls until the condition holds; false after a time no healthy machine needs.
 template <class Condition>
 [[nodiscard]] bool eventually(Condition&& condition) {
-  for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+  for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(40);
        std::chrono::steady_clock::now() < end;) {
     if (condition()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
