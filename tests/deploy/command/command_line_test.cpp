@@ -71,6 +71,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"AModuleToArmThatCannotBe", {"arm", "91"}, {"eciton arm: ", "91", "1 to 90"}},
         Wrong{"APositionThatIsNone", {"goto", "1", "here", "0", "1"}, {"eciton goto: ", "here"}},
         Wrong{"AStopForNobody", {"stop"}, {"eciton stop: no module is named; expected ids, or --all"}},
+        Wrong{"NoExperiment", {"experiment"}, {"eciton experiment: a command is missing; there are ", "hover"}},
+        Wrong{"AnUnknownExperiment", {"experiment", "hoover"}, {"no command 'hoover' (did you mean hover?)"}},
         Wrong{"AnUnknownVendor",
               {"topic", "list", "--dds", "opendds"},
               {"eciton topic list: DDS vendor 'opendds'", "cyclonedds, fastdds"}},
