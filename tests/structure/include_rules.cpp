@@ -72,7 +72,7 @@ const std::vector<ForeignRule>& foreign_rules() {
       {"fastdds/", {"core/bus/vendors/fastdds/", "tests/", "benchmarks/"}},
       {"fastrtps/", {"core/bus/vendors/fastdds/", "tests/", "benchmarks/"}},
       {"fastcdr/", {"core/bus/codec.cpp", "tests/", "benchmarks/"}},
-      {"idlc/", {"idl/generator/"}},
+      {"idlc/", {"idl/generator/", "tests/native_peers/generator/"}},
       {"mujoco/", {"hal/sim/"}},
       {"Eigen/", {"core/robot/", "services/", "hal/", "deploy/", "tests/", "benchmarks/"}},
       {"spdlog/", {"core/base/"}},

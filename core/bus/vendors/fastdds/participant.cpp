@@ -1,12 +1,12 @@
 // Participant of Fast DDS: UDP on one interface, no shared memory, discovery by multicast or by peers.
 #include "core/bus/vendors/fastdds/participant.hpp"
 
-#include <cstdlib>
-#include <cstring>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <cstdlib>
+#include <cstring>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <memory>
 #include <mutex>
 
@@ -49,7 +49,7 @@ void set_discovery(rtps::BuiltinAttributes& builtin, const std::string& address,
 }
 
 fast::DomainParticipantQos participant_qos(const eciton_participant_config& config, const std::string& address,
-                                          const std::vector<std::string>& peers) {
+                                           const std::vector<std::string>& peers) {
   fast::DomainParticipantQos qos;
   qos.name(config.name);
   qos.transport().use_builtin_transports = false;  // these would bring shared memory and every interface
