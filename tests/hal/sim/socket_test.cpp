@@ -115,7 +115,11 @@ TEST(LockstepTest, HostThatDiesIsNamedAtOnce) {
   mortal.join();
   ASSERT_FALSE(run);
   EXPECT_NE(run.error().message.find("lost a hardware host"), std::string::npos) << run.error().message;
-  EXPECT_NE(run.error().message.find("module 2 (the host ends)"), std::string::npos) << run.error().message;
+  // Its goodbye, or, when the server writes into the closed socket before it reads that, the closing itself.
+  const std::string& message = run.error().message;
+  EXPECT_TRUE(message.find("module 2 (the host ends)") != std::string::npos ||
+              message.find("module 2 (its host closed the connection)") != std::string::npos)
+      << message;
 }
 
 TEST(LockstepTest, NamesTheModulesWhoseHostsNeverCame) {
