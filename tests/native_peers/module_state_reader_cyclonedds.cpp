@@ -3,6 +3,7 @@
 #include <dds/dds.h>
 #undef restrict
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,6 +1,7 @@
 // Example: where the modules are, read by a program that shares nothing with Eciton but idl/state.idl, with Fast DDS.
 // Usage: module_state_reader_fastdds DOMAIN [SECONDS]. A module's own ring is domain 10 + its id, on loopback.
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fastdds/dds/domain/DomainParticipant.hpp>

@@ -1,4 +1,5 @@
 // Writer and reader of Cyclone DDS: one copy of the bytes into the pool at write and one at receipt, none in take.
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <mutex>
@@ -17,6 +18,9 @@ namespace {
 
 // Samples on their way beyond those a history holds: being sent, received, taken or retransmitted.
 constexpr std::size_t kSamplesInFlight = 24;
+// Reserved for one endpoint at most. Only events (64 of each key) can need more, and they are not for control: the pool
+// then grows as they come.
+constexpr std::size_t kSamplesReservedMax = 128;
 // A take hands out this many samples at a time.
 constexpr std::uint32_t kTakenAtOnce = 16;
 
@@ -67,7 +71,8 @@ Error no_memory(const eciton_participant& participant, const char* topic, const 
 bool Reservation::acquire(const eciton_type& type, const eciton_qos& qos) {
   BytesPool& pool = BytesPool::instance();
   const std::size_t sample_size = sample_block_size(type);
-  const std::size_t samples = std::size_t{qos.depth} * qos.instances_max + kSamplesInFlight;
+  const std::size_t held = std::min<std::size_t>(std::size_t{qos.depth} * qos.instances_max, kSamplesReservedMax);
+  const std::size_t samples = held + kSamplesInFlight;
   if (!pool.reserve(sample_size, samples)) return false;
   sample_size_ = sample_size;
   samples_ = samples;
