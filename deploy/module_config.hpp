@@ -45,16 +45,16 @@ struct HardwareConfig {
 
 struct ModuleConfig {
   std::uint32_t id = 0;
-  std::string name;                        // empty: "m<id>"
+  std::string name;  // empty: "m<id>"
   std::string airframe = "legion";
-  std::string layout = "services";         // one process each; composed: all in one
-  std::string clock = "wall";              // or lockstep, paced by the world
-  std::string dds = "cyclonedds";          // vendor of every process ...
+  std::string layout = "services";             // one process each; composed: all in one
+  std::string clock = "wall";                  // or lockstep, paced by the world
+  std::string dds = "cyclonedds";              // vendor of every process ...
   std::map<std::string, std::string> vendors;  // ... but of these: process name -> vendor
-  RingConfig module_ring;                  // domain 0: 10 + id
+  RingConfig module_ring;                      // domain 0: 10 + id
   RingConfig swarm_ring{1, "lo", {}};
   double lease_s = 3;
-  int realtime_priority = 0;               // SCHED_FIFO; 0: leave it
+  int realtime_priority = 0;  // SCHED_FIFO; 0: leave it
   HardwareConfig hal;
   estimation::EstimationConfig estimation;
   control::ControlConfig control;

@@ -24,8 +24,10 @@ int run_program(const std::string& name, const std::function<int()>& body) {
 ProgramOptions parse_options(int argc, char** argv, const std::string& purpose, bool with_names) {
   ProgramOptions options;
   CLI::App app(purpose);
-  app.add_option("--config", options.config_files, "YAML file; later ones override earlier ones")->required();
-  app.add_option("--set", options.assignments, "key=value, over the files");
+  app.add_option("--config", options.config_files, "YAML file; later ones override earlier ones")
+      ->required()
+      ->allow_extra_args(false);
+  app.add_option("--set", options.assignments, "key=value, over the files")->allow_extra_args(false);
   app.add_option("--log", options.log_level, "trace, debug, info, warn, error or off");
   if (with_names) app.add_option("names", options.names, "services to run")->required();
   try {

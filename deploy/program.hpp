@@ -15,7 +15,7 @@ struct ProgramOptions {
   std::vector<std::string> config_files;
   std::vector<std::string> assignments;  // --set key=value
   std::string log_level = "info";
-  std::vector<std::string> names;        // services to run
+  std::vector<std::string> names;  // services to run
 };
 
 /// Throws BadInput; prints help and exits with 0 when asked for it.

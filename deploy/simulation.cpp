@@ -1,8 +1,8 @@
 // Puts a fleet together in one process.
 #include "deploy/simulation.hpp"
 
-#include "hal/sim/make_devices.hpp"
 #include "hal/sim/direct_link.hpp"
+#include "hal/sim/make_devices.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -86,8 +86,8 @@ Simulation::Simulation(const SimulationConfig& config) : config_(config) {
     ring.configure(config_.world.seed, Pacing::virtual_time);
     networks.push_back(&ring);
   }
-  executor_ = std::make_unique<runtime::SimExecutor>(
-      runtime::SimConfig{.start = start_}, *wired_, [networks](TimePoint now) {
+  executor_ =
+      std::make_unique<runtime::SimExecutor>(runtime::SimConfig{.start = start_}, *wired_, [networks](TimePoint now) {
         for (Network* network : networks) network->advance(now);
       });
 

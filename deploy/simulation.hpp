@@ -34,7 +34,7 @@ struct RadioLinkConfig {
 struct SimulationConfig {
   hal::sim::WorldConfig world;
   RadioLinkConfig radio_link;
-  ModuleConfig module;                 // of every module, but for its id
+  ModuleConfig module;                     // of every module, but for its id
   std::vector<std::uint32_t> mute_claims;  // an experiment's control: these never publish their link claims
 };
 

@@ -12,8 +12,8 @@ struct WorldFile {
   std::string socket;
   std::string pace = "lockstep";  // or wall
   double tick_s = 0.002;
-  bool truth = true;              // publish truth_pose and truth_contact on the module rings
-  std::string dds = "cyclonedds"; // vendor of the truth's participants
+  bool truth = true;               // publish truth_pose and truth_contact on the module rings
+  std::string dds = "cyclonedds";  // vendor of the truth's participants
   std::string airframe = "legion";
   hal::sim::WorldConfig world;
 

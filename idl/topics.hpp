@@ -61,11 +61,11 @@ inline constexpr Topic<msg::TruthPose> truth_pose{"truth_pose", QosClass::sensor
 inline constexpr Topic<msg::TruthContact> truth_contact{"truth_contact", QosClass::sensor, Scope::module};
 
 inline constexpr auto all =
-    std::tuple{clock,         clock_ack,     imu,         pose_measurement, module_state, external_wrench,
-               contact_wrench, rotor_command, rotor_state, joint_command,    joint_state,  latch_command,
-               latch_state,   flight_goal,   morph_goal,  dock_goal,        mode_request, goal_status,
-               docking_state, link_claim,    chain_view,  beacon,           heartbeat,    event,
-               fault,         truth_pose,    truth_contact};
+    std::tuple{clock,          clock_ack,     imu,          pose_measurement, module_state, external_wrench,
+               contact_wrench, rotor_command, rotor_state,  joint_command,    joint_state,  latch_command,
+               latch_state,    flight_goal,   morph_goal,   dock_goal,        mode_request, goal_status,
+               docking_state,  link_claim,    chain_view,   beacon,           heartbeat,    event,
+               fault,          truth_pose,    truth_contact};
 
 /// Calls `visit(topic)` for each topic.
 template <class Visit>

@@ -16,15 +16,23 @@ struct ConfigTree::Node {
   std::string scalar;
   std::string where;  // "file:line"
   std::vector<Node> list;
-  std::vector<std::pair<std::string, Node>> map;
+  struct Entry;
+  std::vector<Entry> map;
 
-  Node* find(const std::string& key) {
-    for (auto& [name, node] : map) {
-      if (name == key) return &node;
-    }
-    return nullptr;
-  }
+  Node* find(const std::string& key);
 };
+
+struct ConfigTree::Node::Entry {
+  std::string key;
+  Node node;
+};
+
+ConfigTree::Node* ConfigTree::Node::find(const std::string& key) {
+  for (Entry& entry : map) {
+    if (entry.key == key) return &entry.node;
+  }
+  return nullptr;
+}
 
 namespace {
 
@@ -57,7 +65,7 @@ TreeNode from_yaml(const YAML::Node& yaml, const std::string& origin) {
   } else if (yaml.IsMap()) {
     node.kind = TreeNode::Kind::map;
     for (const auto& entry : yaml) {
-      node.map.emplace_back(entry.first.Scalar(), from_yaml<TreeNode>(entry.second, origin));
+      node.map.push_back({entry.first.Scalar(), from_yaml<TreeNode>(entry.second, origin)});
     }
   }
   return node;
@@ -73,7 +81,7 @@ void merge(TreeNode& into, TreeNode&& layer) {
     if (TreeNode* existing = into.find(key)) {
       merge(*existing, std::move(node));
     } else {
-      into.map.emplace_back(key, std::move(node));
+      into.map.push_back({key, std::move(node)});
     }
   }
 }
@@ -81,8 +89,12 @@ void merge(TreeNode& into, TreeNode&& layer) {
 template <class TreeNode>
 void emit(YAML::Emitter& out, const TreeNode& node) {
   switch (node.kind) {
-    case TreeNode::Kind::none: out << YAML::Null; break;
-    case TreeNode::Kind::scalar: out << node.scalar; break;
+    case TreeNode::Kind::none:
+      out << YAML::Null;
+      break;
+    case TreeNode::Kind::scalar:
+      out << node.scalar;
+      break;
     case TreeNode::Kind::list:
       out << YAML::Flow << YAML::BeginSeq;
       for (const auto& element : node.list) emit(out, element);
@@ -115,10 +127,12 @@ Status ConfigTree::add_text(const std::string& yaml, const std::string& origin) 
 
 Status ConfigTree::add_file(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "r");
-  if (file == nullptr) return Error{"config file " + path + " cannot be read: it does not exist or may not be opened"};
+  if (file == nullptr)
+    return Error{"config file " + path + " cannot be read: it does not exist or may not be opened"};
   std::string text;
   std::array<char, 4096> block{};
-  for (std::size_t got = 0; (got = std::fread(block.data(), 1, block.size(), file)) > 0;) text.append(block.data(), got);
+  for (std::size_t got = 0; (got = std::fread(block.data(), 1, block.size(), file)) > 0;)
+    text.append(block.data(), got);
   std::fclose(file);
   return add_text(text, path);
 }
@@ -141,7 +155,7 @@ Status ConfigTree::set(const std::string& assignment, const std::string& origin)
     Node parent;
     parent.kind = Node::Kind::map;
     parent.where = value.where;
-    parent.map.emplace_back(dot == std::string::npos ? keys : keys.substr(dot + 1), std::move(value));
+    parent.map.push_back({dot == std::string::npos ? keys : keys.substr(dot + 1), std::move(value)});
     value = std::move(parent);
     if (dot == std::string::npos) break;
     keys.resize(dot);
@@ -258,7 +272,7 @@ std::vector<std::string> ConfigReader::map_keys(const char* key) {
   std::vector<std::string> keys;
   if (node == nullptr) return keys;
   if (node->kind != ConfigTree::Node::Kind::map) s.fail(*node, s.path_of(key), "keys and values below it");
-  for (const auto& entry : node->map) keys.push_back(entry.first);
+  for (const auto& entry : node->map) keys.push_back(entry.key);
   return keys;
 }
 

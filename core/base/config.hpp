@@ -65,9 +65,7 @@ class ConfigReader {
   void operator()(const char* key, T& value, Range range) {
     field(key, value, &range, nullptr);
   }
-  void operator()(const char* key, std::string& value, const OneOf& options) {
-    field(key, value, nullptr, &options);
-  }
+  void operator()(const char* key, std::string& value, const OneOf& options) { field(key, value, nullptr, &options); }
 
   /// Call after the last field of the root: keys nobody asked for are errors.
   Status finish();

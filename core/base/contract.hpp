@@ -21,8 +21,8 @@ void report_violation(const Violation& violation) noexcept;
 
 }  // namespace eciton
 
-#define ECITON_EXPECT(condition, message)                                                     \
-  do {                                                                                        \
-    if (!(condition)) [[unlikely]]                                                            \
-      ::eciton::report_violation({#condition, message, __FILE__, __LINE__});                  \
+#define ECITON_EXPECT(condition, message)                                    \
+  do {                                                                       \
+    if (!(condition)) [[unlikely]]                                           \
+      ::eciton::report_violation({#condition, message, __FILE__, __LINE__}); \
   } while (false)

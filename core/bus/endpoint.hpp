@@ -60,6 +60,8 @@ class ReaderCore {
   /// Whether a sample is queued, and the newest stamp that ever came in: what a triggered service waits for.
   virtual bool has_sample() const noexcept = 0;
   TimePoint newest_stamp() const noexcept { return newest_stamp_; }
+  /// How many samples were queued that may trigger a step.
+  std::uint64_t news() const noexcept { return news_; }
 
   /// Whether samples that come from now on signal the participant's waker; look for those already there by fetch().
   void set_wakes(bool wakes) noexcept { wakes_.store(wakes); }
@@ -74,6 +76,7 @@ class ReaderCore {
   Participant& participant_;
   TopicInfo topic_;
   ReaderStatistics statistics_;
+  std::uint64_t news_ = 0;
   TimePoint newest_stamp_{-std::chrono::hours(24 * 365 * 100)};  // "never", far from overflow
 
  private:

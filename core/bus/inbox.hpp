@@ -11,20 +11,17 @@
 
 namespace eciton::bus {
 
-/// Every sample that arrived is in exactly one of delivered, filtered, replaced, or a dropped_* count, or queued.
+/// Every sample that arrived is in exactly one of delivered, replaced, or a dropped_* count, or queued.
 struct ReaderStatistics {
   std::uint64_t received = 0;
   std::uint64_t delivered = 0;
-  std::uint64_t filtered = 0;           // of a module the reader was told not to hear
   std::uint64_t replaced = 0;           // by a newer one of its key before it was taken: keep last
   std::uint64_t dropped_malformed = 0;  // not a well-formed sample of the type
   std::uint64_t dropped_late = 0;       // a newer one of its key had been delivered (sensor class)
   std::uint64_t dropped_expired = 0;    // older than the topic's lifespan when taken
   std::uint64_t dropped_overflow = 0;   // over the queue's bound
 
-  std::uint64_t dropped() const {
-    return dropped_malformed + dropped_late + dropped_expired + dropped_overflow;
-  }
+  std::uint64_t dropped() const { return dropped_malformed + dropped_late + dropped_expired + dropped_overflow; }
 };
 
 template <Message T>
@@ -32,27 +29,16 @@ class Inbox {
  public:
   /// `keep_last`: 1 replaces the queued sample of the same key; more queues them all up to `capacity`.
   Inbox(std::size_t keep_last, std::size_t capacity, bool ordered)
-      : keep_last_(keep_last), ordered_(ordered), slots_(capacity), newest_(ordered ? capacity : 0) {}
+      : keep_last_(keep_last), ordered_(ordered), slots_(capacity + 1), newest_(ordered ? capacity : 0) {}
 
   /// Returns the queued sample, nullptr if it was dropped.
   const T* push(std::span<const std::uint8_t> cdr, ReaderStatistics& statistics) {
     ++statistics.received;
-    // Decoded in place: a slot that stays free when the sample is not wanted.
-    if (count_ == slots_.size()) {
-      first_ = next(first_, 1);
-      --count_;
-      ++statistics.dropped_overflow;
-    }
+    // Decoded in place, into the slot that is always free: nothing gives way to a sample that is not wanted.
     Slot& slot = slots_[next(first_, count_)];
     if (!decode(cdr, slot.value)) {
       ++statistics.dropped_malformed;
       return nullptr;
-    }
-    if constexpr (requires { slot.value.module_id; }) {
-      if (only_module_ && slot.value.module_id != *only_module_) {
-        ++statistics.filtered;
-        return nullptr;
-      }
     }
     slot.key = key_hash(slot.value);
     if (ordered_ && !is_newest(slot)) {
@@ -68,11 +54,15 @@ class Inbox {
         return &queued.value;
       }
     }
+    if (count_ + 1 == slots_.size()) {
+      first_ = next(first_, 1);
+      --count_;
+      ++statistics.dropped_overflow;
+    }
     ++count_;
     return &slot.value;
   }
 
-  void accept_only(std::uint32_t module_id) { only_module_ = module_id; }
   bool empty() const { return count_ == 0; }
 
   /// The oldest queued sample, valid until the next push; nullptr: none.
@@ -113,7 +103,6 @@ class Inbox {
 
   std::size_t keep_last_;
   bool ordered_;
-  std::optional<std::uint32_t> only_module_;
   std::vector<Slot> slots_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;

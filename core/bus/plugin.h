@@ -15,9 +15,9 @@ extern "C" {
 #define ECITON_PLUGIN_ENTRY "eciton_dds_plugin"
 
 typedef struct eciton_type {
-  const char* name;   /* DDS type name; outlives the endpoint */
-  uint32_t size_max;  /* greatest serialized size, encapsulation header included; a multiple of 4 */
-  uint32_t key_size;  /* bytes of the serialized key, at most 16; 0: no key */
+  const char* name;  /* DDS type name; outlives the endpoint */
+  uint32_t size_max; /* greatest serialized size, encapsulation header included; a multiple of 4 */
+  uint32_t key_size; /* bytes of the serialized key, at most 16; 0: no key */
   /* The 16-byte key hash (big-endian CDR of the key, zero-padded) of a sample, or with key_only of a
    * serialized key; both with encapsulation header, of either endianness. Returns 0 if malformed. */
   int (*key_hash)(const uint8_t* cdr, uint32_t size, int key_only, uint8_t hash[16]);
@@ -61,7 +61,8 @@ typedef struct eciton_plugin {
   const char* vendor;   /* "fastdds" */
   const char* version;  /* of the vendor's library */
 
-  eciton_participant* (*participant_create)(const eciton_participant_config* config, char* error, uint32_t error_size);
+  eciton_participant* (*participant_create)(const eciton_participant_config* config, char* error,
+                                            uint32_t error_size);
   void (*participant_destroy)(eciton_participant* participant); /* after its endpoints */
 
   eciton_writer* (*writer_create)(eciton_participant* participant, const char* topic, const eciton_type* type,
@@ -73,7 +74,8 @@ typedef struct eciton_plugin {
   eciton_reader* (*reader_create)(eciton_participant* participant, const char* topic, const eciton_type* type,
                                   const eciton_qos* qos, eciton_wake wake, char* error, uint32_t error_size);
   void (*reader_destroy)(eciton_reader* reader); /* no signal after it returns */
-  uint32_t (*reader_take)(eciton_reader* reader, uint32_t count_max, eciton_sink sink, void* context); /* samples given */
+  uint32_t (*reader_take)(eciton_reader* reader, uint32_t count_max, eciton_sink sink,
+                          void* context); /* samples given */
   uint32_t (*reader_matched)(eciton_reader* reader);
 } eciton_plugin;
 

@@ -103,8 +103,7 @@ std::vector<std::string> available_vendors() {
     for (const auto& entry : fs::directory_iterator(directory, none)) {
       const std::string file = entry.path().filename().string();
       if (!file.starts_with(file_prefix) || !file.ends_with(file_suffix)) continue;
-      vendors.push_back(
-          file.substr(file_prefix.size(), file.size() - file_prefix.size() - file_suffix.size()));
+      vendors.push_back(file.substr(file_prefix.size(), file.size() - file_prefix.size() - file_suffix.size()));
     }
   }
   std::sort(vendors.begin(), vendors.end());

@@ -45,13 +45,10 @@ class Reader {
     return newest;
   }
 
-  /// From here on samples of other modules are not heard: where peers' samples, which the radio puts on the ring,
-  /// must neither trigger a step nor count as news.
-  void accept_only(std::uint32_t module_id)
-    requires requires(T sample) { sample.module_id; }
-  {
-    core_->inbox.accept_only(module_id);
-  }
+  /// Samples of other modules are delivered as ever, but are no news: they trigger no step and do not put off
+  /// overdue(). For topics whose peers' samples the radio puts on the ring.
+  void news_only_of(std::uint32_t module_id) requires requires(T sample) { sample.module_id; }
+  { core_->news_of = module_id; }
 
   /// Whether the newest sample that came is older than the topic's deadline, or none came yet.
   bool overdue() const { return core_->participant().now() - core_->newest_stamp() > core_->topic().deadline; }
@@ -72,11 +69,16 @@ class Reader {
                 TypeTraits<T>::keyed ? plugin_qos(topic.qos, true).instances_max : plugin_qos(topic.qos, false).depth,
                 topic.qos == QosClass::sensor) {}
     void accept(std::span<const std::uint8_t> cdr) noexcept override {
-      if (const T* value = inbox.push(cdr, statistics_)) {
-        newest_stamp_ = std::max(newest_stamp_, from_ns(value->stamp_ns));
-      }
+      const T* value = inbox.push(cdr, statistics_);
+      if (value == nullptr || !is_news(*value)) return;
+      ++news_;
+      newest_stamp_ = std::max(newest_stamp_, from_ns(value->stamp_ns));
     }
     bool has_sample() const noexcept override { return !inbox.empty(); }
+    bool is_news(const T& value) const {
+      if constexpr (requires { value.module_id; }) return !news_of || value.module_id == *news_of;
+      return true;
+    }
     Duration age_of(const T& value) const {
       Duration offset{};
       if constexpr (requires { value.module_id; }) {
@@ -88,6 +90,7 @@ class Reader {
     void count_expired() { ++statistics_.dropped_expired; }
     void count_delivered() { ++statistics_.delivered; }
     Inbox<T> inbox;
+    std::optional<std::uint32_t> news_of;
   };
   std::unique_ptr<Core> core_;
 };

@@ -20,6 +20,7 @@ template <class T>
 concept Message = requires {
   { TypeTraits<T>::name } -> std::convertible_to<std::string_view>;
   { TypeTraits<T>::size_max } -> std::convertible_to<std::size_t>;
-} && std::is_trivially_copyable_v<T>;
+}
+&&std::is_trivially_copyable_v<T>;
 
 }  // namespace eciton::bus

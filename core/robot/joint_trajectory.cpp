@@ -6,7 +6,6 @@
 
 namespace eciton::robot {
 
-
 JointTrajectory::JointTrajectory(const Airframe& airframe, const JointTrajectoryConfig& config)
     : airframe_(airframe), config_(config) {
   const std::array<double, joints_max> zero{};

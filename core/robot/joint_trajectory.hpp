@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "core/robot/minimum_jerk.hpp"
 #include "core/robot/joint_limits.hpp"
+#include "core/robot/minimum_jerk.hpp"
 
 namespace eciton::robot {
 

@@ -22,7 +22,7 @@ class LockstepExecutor final : public Executor {
   };
 
   LockstepExecutor(const ExecutorConfig& config, std::vector<bus::Participant*> participants,
-                   Duration sample_wait = std::chrono::milliseconds(200));
+                   Duration sample_wait = std::chrono::seconds(1));
 
   void run(const StopFlag& stop) override;
 

@@ -18,7 +18,8 @@ enum class Phase { sense, estimate, coordinate, control, act };
 struct Schedule {
   Duration period{};                   // periodic: 0 < period
   bus::ReaderCore* trigger = nullptr;  // triggered: step when it has a sample ...
-  Duration at_most{};                  // ... at the latest this long after the last step
+  Duration at_most{};                  // ... at the latest this long after the last step; on the wall clock
+                                       // a quarter longer after one that had a sample
   Phase phase = Phase::coordinate;
 };
 

@@ -39,6 +39,8 @@ ServiceGroup::ServiceGroup(const ExecutorConfig& config, std::vector<bus::Partic
   }
   if (config_.heartbeat_period > Duration::zero()) {
     heartbeat_.emplace(module_ring().create_writer(topics::heartbeat));
+    beacon_.emplace(module_ring().create_reader(topics::beacon));
+    beacon_->trigger().set_wakes(false);
   }
 }
 
@@ -93,7 +95,7 @@ bool ServiceGroup::due(Entry& entry, Pace at) noexcept {
   if (entry.triggered()) {
     bus::ReaderCore& trigger = *entry.schedule.trigger;
     trigger.fetch();
-    if (trigger.has_sample() && trigger.statistics().received != entry.received) return true;
+    if (trigger.has_sample() && trigger.news() != entry.news) return true;
   }
   return at >= entry.next_due;
 }
@@ -102,8 +104,9 @@ Pace ServiceGroup::step(Entry& entry, Pace at, TimePoint now) noexcept {
   for (bus::Participant* participant : participants_) participant->set_now(now);
   bool sampled = false;
   if (entry.triggered()) {
-    sampled = entry.schedule.trigger->has_sample();
-    entry.received = entry.schedule.trigger->statistics().received;
+    const bus::ReaderCore& trigger = *entry.schedule.trigger;
+    sampled = trigger.has_sample() && trigger.news() != entry.news;
+    entry.news = trigger.news();
   }
   const bool measured = pacing_ != Pacing::simulated;
   const Duration before = measured ? monotonic_now() : Duration::zero();
@@ -114,6 +117,8 @@ Pace ServiceGroup::step(Entry& entry, Pace at, TimePoint now) noexcept {
     if (!sampled) entry.statistics.count_timeout();
     if (pacing_ == Pacing::wall_clock && execution > entry.schedule.at_most) entry.statistics.count_overruns(1);
     entry.next_due = at + entry.schedule.at_most;
+    // Samples that come as often as at_most asks, give or take, are not preceded by time-outs.
+    if (sampled && pacing_ == Pacing::wall_clock) entry.next_due += entry.schedule.at_most / 4;
   } else {
     const Duration period = entry.schedule.period;
     const std::int64_t skipped = std::max(at - entry.next_due, Duration::zero()) / period;
@@ -126,6 +131,7 @@ Pace ServiceGroup::step(Entry& entry, Pace at, TimePoint now) noexcept {
 void ServiceGroup::beat_if_due(Pace at, TimePoint now) noexcept {
   if (at < next_heartbeat_) return;
   next_heartbeat_ += ((at - next_heartbeat_) / config_.heartbeat_period + 1) * config_.heartbeat_period;
+  learn_clock_offsets();
   std::uint64_t dropped = 0;
   for (const bus::Participant* participant : participants_) dropped += participant->dropped();
   for (const auto& entry : entries_) {
@@ -144,6 +150,19 @@ Pace ServiceGroup::next_step_due() const noexcept {
   Pace next = Pace::max();
   for (const auto& entry : entries_) next = std::min(next, entry->next_due);
   return next;
+}
+
+void ServiceGroup::learn_clock_offsets() noexcept {
+  // So that every process turns a peer's stamps into ages as the radio does.
+  while (const auto beacon = beacon_->take()) {
+    if (beacon->value.module_id != config_.module_id) continue;
+    for (const msg::PeerEcho& peer : beacon->value.peers) {
+      if (peer.offset_bound_ns < 0) continue;
+      for (bus::Participant* participant : participants_) {
+        participant->set_clock_offset(peer.module_id, Duration{peer.offset_ns});
+      }
+    }
+  }
 }
 
 Pace ServiceGroup::next_due() const noexcept { return std::min(next_step_due(), next_heartbeat_); }

@@ -33,9 +33,9 @@ class ServiceGroup {
   struct Entry {
     Service* service;
     Schedule schedule;
-    Pace next_due{};             // the next step of a periodic service; when a triggered one has waited long enough
-    std::uint64_t received = 0;  // by its trigger, when it last stepped
-    bool suspended = false;      // neither steps nor beats: a hang, for tests of failures
+    Pace next_due{};         // the next step of a periodic service; when a triggered one has waited long enough
+    std::uint64_t news = 0;  // of its trigger, when it last stepped
+    bool suspended = false;  // neither steps nor beats: a hang, for tests of failures
     CycleStatistics statistics;
     msg::Heartbeat heartbeat;  // what does not change is filled in
 
@@ -86,12 +86,14 @@ class ServiceGroup {
 
  private:
   void fill_constant_fields(Entry& entry);
+  void learn_clock_offsets() noexcept;
 
   ExecutorConfig config_;
   std::vector<bus::Participant*> participants_;
   Pacing pacing_;
   std::vector<std::unique_ptr<Entry>> entries_;
   std::optional<bus::Writer<msg::Heartbeat>> heartbeat_;
+  std::optional<bus::Reader<msg::Beacon>> beacon_;  // our module's own, which knows how the peers' clocks stand
   Pace next_heartbeat_ = Pace::max();
 };
 

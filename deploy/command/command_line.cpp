@@ -82,8 +82,14 @@ std::string message_for(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& at = chosen(app, name);
   const std::vector<std::string> extras = app.remaining(true);
   std::string what = error.what();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !extras.empty()) {
+  // CLI11 asks for a subcommand before it looks at the word that is none.
+  const bool extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  const bool no_subcommand =
+      dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !subcommands_of(at).empty();
+  if ((extra || no_subcommand) && !extras.empty()) {
     what = unexpected(at, extras.front());
+  } else if (no_subcommand) {
+    what = missing_subcommand(at);
   }
   return name + ": " + what + ". Try '" + name + " --help'.";
 }

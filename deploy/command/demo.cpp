@@ -42,7 +42,8 @@ void check_output_paths(const DemoOptions& options) {
   if (options.json_file.empty()) return;
   const auto parent = std::filesystem::absolute(options.json_file).parent_path();
   if (::access(parent.c_str(), W_OK) != 0) {
-    throw BadInput{{"--json " + options.json_file + ": directory " + parent.string() + " is not there or not writable"}};
+    throw BadInput{
+        {"--json " + options.json_file + ": directory " + parent.string() + " is not there or not writable"}};
   }
 }
 
@@ -95,7 +96,8 @@ void add_demo(CLI::App& app, Run& run) {
       ->check(CLI::IsMember({"services", "composed"}))
       ->capture_default_str();
   sub->add_option("--seed", options->seed, "of the world")->capture_default_str();
-  sub->add_option("--set", options->assignments, "key=value, of the modules' configs or of the world's");
+  sub->add_option("--set", options->assignments, "key=value, of the modules' configs or of the world's")
+      ->allow_extra_args(false);
   sub->add_option("--keep-logs", options->keep_logs, "copy the processes' logs to this directory at the end");
   sub->add_option("--json", options->json_file, "write the figures to this file as well");
   on_chosen(*sub, run, [options] { return fly_demo(*options); });

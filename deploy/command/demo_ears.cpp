@@ -48,7 +48,7 @@ void DemoEar::poll(DemoPhase phase, const msg::ModuleState* state, DemoFigures& 
     const auto& p = truth_->p_WM_m;
     figures.tracking_error_m.add(length({p[0] - (*goal_m_)[0], p[1] - (*goal_m_)[1], p[2] - (*goal_m_)[2]}));
   }
-  if (state == nullptr || !truth_ || state->stamp_ns == compared_ns_) return;
+  if (phase == DemoPhase::grounded || state == nullptr || !truth_ || state->stamp_ns == compared_ns_) return;
   const std::int64_t later_ns = state->stamp_ns - truth_->stamp_ns;
   if (std::abs(later_ns) > comparable_ns) return;
   compared_ns_ = state->stamp_ns;

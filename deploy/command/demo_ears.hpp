@@ -30,7 +30,7 @@ struct Spread {
 };
 
 /// What the flight is about at a moment, so that figures are not mixed.
-enum class DemoPhase { other, hovering, docking, assembled, morphing };
+enum class DemoPhase { grounded, other, hovering, docking, assembled, morphing };
 
 struct DemoFigures {
   std::map<DemoPhase, Spread> contact_force_N;  // the physics'

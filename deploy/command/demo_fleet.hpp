@@ -12,13 +12,13 @@ namespace eciton::deploy {
 
 struct DemoOptions {
   std::uint32_t modules = 3;
-  std::string dds;                  // cyclonedds, fastdds, mixed; empty: ECITON_DDS, or Cyclone DDS
+  std::string dds{};                // cyclonedds, fastdds, mixed; empty: ECITON_DDS, or Cyclone DDS
   std::string clock = "lockstep";   // or wall
   std::string layout = "services";  // or composed
   std::uint64_t seed = 1;
-  std::vector<std::string> assignments;  // of the modules' and the world's keys
-  std::string keep_logs;
-  std::string json_file;
+  std::vector<std::string> assignments{};  // of the modules' and the world's keys
+  std::string keep_logs{};
+  std::string json_file{};
 
   template <class V>
   void visit_fields(V& v) {

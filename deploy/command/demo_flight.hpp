@@ -65,7 +65,9 @@ class DemoFlight {
   void hover_until_zeroed();
   void dock_all();
   void dock(std::uint32_t follower);
-  void check_agreement();
+  /// Until the first so many modules all fly by one view of just themselves.
+  void agree(std::size_t members);
+  void hover_as_one_body();
   void morph();
   void undock_all();
   void spread_and_land();
@@ -98,7 +100,7 @@ class DemoFlight {
   std::vector<std::uint32_t> ids_;
 
   std::string step_;
-  DemoPhase phase_ = DemoPhase::other;
+  DemoPhase phase_ = DemoPhase::grounded;
   DemoResult result_;
   std::vector<std::string> faults_;
   Duration wall_begin_{};

@@ -12,7 +12,8 @@ constexpr double height_m = 1.5;
 constexpr double morph_angle_rad = 0.4;
 constexpr double morph_pitch_rad = 0.15;
 constexpr double morph_rate_rad_s = 0.12;
-constexpr double settle_s = 3;  // of a hover before it counts as one
+constexpr double home_speed_m_s = 0.8;
+constexpr double settle_s = 2.5;  // of a hover before it counts as one
 
 // Time-outs, on the modules' clock.
 constexpr double start_timeout_s = 20, arm_timeout_s = 10, flight_timeout_s = 30, zero_timeout_s = 20,
@@ -45,7 +46,7 @@ std::optional<DemoFailure> DemoFlight::fly() {
     arm_and_take_off();
     hover_until_zeroed();
     dock_all();
-    check_agreement();
+    hover_as_one_body();
     morph();
     undock_all();
     spread_and_land();
@@ -58,7 +59,7 @@ std::optional<DemoFailure> DemoFlight::fly() {
 }
 
 void DemoFlight::wait_for_modules() {
-  begin("modules start and find each other", DemoPhase::other);
+  begin("modules start and find each other", DemoPhase::grounded);
   const auto ready = [&](std::uint32_t id, const DemoEar& ear) {
     const KnownModule* module = operator_.fleet().find(id);
     return module != nullptr && module->state && module->state->mode == msg::EstimatorMode::ready &&
@@ -87,7 +88,7 @@ void DemoFlight::wait_for_modules() {
 }
 
 void DemoFlight::arm_and_take_off() {
-  begin("arm", DemoPhase::other);
+  begin("arm", DemoPhase::grounded);
   finish(for_each_module([&](std::uint32_t id, std::size_t) { return operator_.arm(id); }), arm_timeout_s);
   begin("take off", DemoPhase::other);
   finish(for_each_module([&](std::uint32_t id, std::size_t) { return operator_.take_off(id, height_m); }),
@@ -117,7 +118,10 @@ void DemoFlight::hover_until_zeroed() {
 }
 
 void DemoFlight::dock_all() {
-  for (std::size_t k = 1; k < ids_.size(); ++k) dock(ids_[k]);
+  for (std::size_t k = 1; k < ids_.size(); ++k) {
+    dock(ids_[k]);
+    agree(k + 1);
+  }
   result_.assembled = true;
 }
 
@@ -156,24 +160,26 @@ void DemoFlight::dock(std::uint32_t follower) {
   result_.dockings.push_back(record);
 }
 
-void DemoFlight::check_agreement() {
-  begin("agree on the chain", DemoPhase::other);
-  const auto agree = [&] {
-    for (const std::uint32_t id : ids_) {
-      const msg::ChainView *view = view_of(id), *first = view_of(ids_.front());
+void DemoFlight::agree(std::size_t members) {
+  const auto agreed = [&] {
+    for (std::size_t k = 0; k < members; ++k) {
+      const msg::ChainView *view = view_of(ids_[k]), *first = view_of(ids_.front());
       if (view == nullptr || !view->active || view->active_epoch != first->active_epoch) return false;
-      if (view->epoch != view->active_epoch || view->members.size() != ids_.size()) return false;
+      if (view->epoch != view->active_epoch || view->members.size() != members) return false;
     }
     return true;
   };
-  wait_until(agree, flight_timeout_s, [&] {
-    std::string text = "views differ:";
-    for (const std::uint32_t id : ids_) {
-      const msg::ChainView* view = view_of(id);
-      text += " m" + std::to_string(id) + " has " + (view != nullptr ? members_text(*view) : "none");
+  wait_until(agreed, flight_timeout_s, [&] {
+    std::string text = "the members' views differ:";
+    for (std::size_t k = 0; k < members; ++k) {
+      const msg::ChainView* view = view_of(ids_[k]);
+      text += " m" + std::to_string(ids_[k]) + " has " + (view != nullptr ? members_text(*view) : "none");
     }
     return text;
   });
+}
+
+void DemoFlight::hover_as_one_body() {
   begin("hover as one body, chain " + members_text(*view_of(ids_.front())), DemoPhase::assembled);
   hover(settle_s);
 }
@@ -223,21 +229,24 @@ void DemoFlight::undock_all() {
 void DemoFlight::spread_and_land() {
   begin("go back and hover", DemoPhase::other);
   const auto home = [&](std::size_t k) { return std::array{fleet_.start_m[k][0], fleet_.start_m[k][1], height_m}; };
-  finish(for_each_module([&](std::uint32_t id, std::size_t k) { return operator_.go_to(id, home(k), 0, 0); }),
+  finish(for_each_module(
+             [&](std::uint32_t id, std::size_t k) { return operator_.go_to(id, home(k), 0, home_speed_m_s); }),
          flight_timeout_s);
   hover(settle_s);
   for (std::size_t k = 0; k < ears_.size(); ++k) ears_[k]->set_goal(home(k));
   phase_ = DemoPhase::hovering;
-  hover(2);
+  hover(1.5);
   for (const auto& ear : ears_) ear->set_goal(std::nullopt);
   begin("land", DemoPhase::other);
   finish(for_each_module([&](std::uint32_t id, std::size_t) { return operator_.land(id); }), flight_timeout_s);
-  begin("disarm", DemoPhase::other);
+  // A landing ends disarmed; one that did not is told to.
   Goals goals;
   for (const auto& ear : ears_) {
     if (ear->flight_mode() != msg::FlightMode::disarmed) goals.push_back(operator_.disarm(ear->id()));
   }
-  if (!goals.empty()) finish(goals, arm_timeout_s);
+  if (goals.empty()) return;
+  begin("disarm", DemoPhase::grounded);
+  finish(goals, arm_timeout_s);
 }
 
 }  // namespace eciton::deploy

@@ -69,10 +69,9 @@ int run(const Options& options) {
   const ExperimentConfig config = make_config(options);
   const bool live = ::isatty(STDERR_FILENO) != 0;
   const auto began = std::chrono::steady_clock::now();
-  const Figures figures =
-      run_experiment(*options.experiment, config, options.jobs, [&](std::uint32_t finished) {
-        if (live) std::fprintf(stderr, "\r%s: %u of %u", options.experiment->name.c_str(), finished, config.trials);
-      });
+  const Figures figures = run_experiment(*options.experiment, config, options.jobs, [&](std::uint32_t finished) {
+    if (live) std::fprintf(stderr, "\r%s: %u of %u", options.experiment->name.c_str(), finished, config.trials);
+  });
   if (live) std::fprintf(stderr, "\r\033[K");
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   std::printf("%s, seed %llu, simulated clock, %.1f s of wall clock in %u processes\n",
@@ -92,7 +91,9 @@ void add_one(CLI::App& parent, Run& run_chosen, const Experiment& experiment) {
   }
   verb.add_option("--jobs", options->jobs, "trials at a time")->check(CLI::Range(1u, 64u))->capture_default_str();
   verb.add_option("--json", options->json, "file for the figures");
-  verb.add_option("--set", options->assignments, "key=value: gust_N, sensing, world, wakes, law, module.…, radio_link.…");
+  verb.add_option("--set", options->assignments,
+                  "key=value: gust_N, sensing, world, wakes, law, module.…, radio_link.…")
+      ->allow_extra_args(false);
   if (!experiment.breaks.empty()) {
     verb.add_option("--break", options->break_what, "break something: a control that must fail")
         ->check(CLI::IsMember(experiment.breaks));

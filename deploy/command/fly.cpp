@@ -111,7 +111,8 @@ void add_swarm_options(CLI::App& sub, FlyOptions& options) {
   sub.add_option("--swarm-domain", options.swarm_domain, "DDS domain of the swarm ring (default: 1)")
       ->check(CLI::Range(0, 231));
   sub.add_option("--interface", options.network_interface, "network interface of the swarm ring (default: lo)");
-  sub.add_option("--peer", options.peers, "address of a module, where there is no multicast");
+  sub.add_option("--peer", options.peers, "address of a module, where there is no multicast")
+      ->allow_extra_args(false);
   sub.add_option("--dds", options.vendor, "DDS vendor: cyclonedds or fastdds (default: ECITON_DDS, else cyclonedds)");
 }
 

@@ -4,14 +4,12 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
+
+#include "core/base/wall_clock.hpp"
 
 namespace eciton::deploy {
 namespace {
-
-Duration monotonic_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
-TimePoint wall_now() { return TimePoint{std::chrono::system_clock::now().time_since_epoch()}; }
 
 std::vector<TopicEntry const*> distinct(std::vector<const TopicEntry*> topics) {
   std::sort(topics.begin(), topics.end());
@@ -106,7 +104,7 @@ int listen(Listener& listener, const TopicEntry& topic, const Session& session,
   std::fprintf(stderr, "%s on %s\n", name.c_str(), listener.ring().c_str());
   std::uint64_t good = 0;
   std::uint64_t malformed = 0;
-  const auto start = std::chrono::steady_clock::now();
+  const Duration start = monotonic_now();
   bool hinted = false;
   const auto take = [&](const Arrival& arrival) {
     if (const auto decoded = topic.decode(arrival.cdr)) {
@@ -119,7 +117,7 @@ int listen(Listener& listener, const TopicEntry& topic, const Session& session,
   };
   const auto tick = [&] {
     on_tick();
-    if (hinted || good > 0 || std::chrono::steady_clock::now() - start < patience) return;
+    if (hinted || good > 0 || monotonic_now() - start < patience) return;
     hinted = true;
     std::fprintf(stderr, "%s: nothing yet, %u publishers on %s; 'eciton topic list' shows what is there\n",
                  name.c_str(), listener.writers(topic), listener.ring().c_str());

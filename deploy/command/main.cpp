@@ -10,5 +10,6 @@
 
 int main(int argc, char** argv) {
   using namespace eciton::deploy;
-  return run_command_line(argc, argv, {&add_fly, &add_up, &add_down, &add_status, &add_demo, &add_experiment, &add_topic});
+  return run_command_line(argc, argv,
+                          {&add_fly, &add_up, &add_down, &add_status, &add_demo, &add_experiment, &add_topic});
 }

@@ -114,7 +114,7 @@ void add_up(CLI::App& app, Run& run) {
   CLI::App* sub = app.add_subcommand("up", "run the processes of modules, restarting what ends");
   sub->add_option("MODULE.yaml", options->files, "one file per module")->required();
   sub->add_option("--world", options->world_file, "a simulated world for them, as eciton-world takes it");
-  sub->add_option("--set", options->assignments, "key=value, over all the files");
+  sub->add_option("--set", options->assignments, "key=value, over all the files")->allow_extra_args(false);
   sub->add_flag("--detach", options->detach, "go on in the background; 'eciton down' ends it");
   on_chosen(*sub, run, [options] { return bring_up(*options); });
 }

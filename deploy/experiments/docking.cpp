@@ -13,7 +13,7 @@ constexpr double height_m = 1.5;
 constexpr double module_length_m = 0.806;  // docking point to docking point
 constexpr double ask_limit_s = 30;
 constexpr double dock_limit_s = 45;
-constexpr double held_s = 1.0;             // a latch that lets go again was none
+constexpr double held_s = 1.0;  // a latch that lets go again was none
 
 /// Gap 1.5 +- 0.3 m, lateral +- 0.4, vertical +- 0.3, uniform: the follower behind the target's male port
 /// would be in front of it, so it stands on the side of the target's female port or of its male one by turns.
@@ -41,9 +41,8 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   simulated.world.seed = seed;
   simulated.world.break_what = config.break_what == "weld-off" ? "weld-off" : "";
   simulated.module.docking.claims_muted = config.break_what == "claims-muted";
-  simulated.world.modules = {{.id = target},
-                             {.id = follower,
-                              .p_WB_m = {start.side * (module_length_m + start.gap_m), start.lateral_m, 0}}};
+  simulated.world.modules = {
+      {.id = target}, {.id = follower, .p_WB_m = {start.side * (module_length_m + start.gap_m), start.lateral_m, 0}}};
   Simulation simulation(simulated);
   Pilot pilot(simulation);
   pilot.bring_to_hover({height_m, height_m + start.vertical_m});

@@ -15,8 +15,8 @@ namespace eciton::deploy {
 struct ExperimentConfig {
   std::uint64_t seed = 1;
   std::uint32_t trials = 1;
-  std::uint32_t modules = 0;       // 0: as many as the experiment needs
-  std::string break_what;          // a control that must fail
+  std::uint32_t modules = 0;  // 0: as many as the experiment needs
+  std::string break_what;     // a control that must fail
   SimulationConfig simulation;
 
   template <class V>
@@ -37,9 +37,9 @@ struct Figures {
 struct Experiment {
   std::string name;
   std::string summary;
-  std::uint32_t modules;             // when the config does not say
+  std::uint32_t modules;  // when the config does not say
   bool has_trials;
-  std::vector<std::string> breaks;   // what --break understands
+  std::vector<std::string> breaks;  // what --break understands
   Figures (*run_trial)(const ExperimentConfig& config, std::uint32_t trial);
   /// From all trials' figures, in their order.
   Figures (*summarise)(const std::vector<Figures>& trials);

@@ -24,8 +24,7 @@ constexpr Duration command_wait_wall = std::chrono::microseconds(1500);  // of t
 class SimulatedHost {
  public:
   SimulatedHost(const deploy::ModuleConfig& config, const runtime::StopFlag& stop)
-      : config_(config),
-        stop_(stop),
+      : stop_(stop),
         airframe_(deploy::make_airframe(config)),
         link_(value_or_throw(hal::sim::SocketLink::connect(config.hal.socket, config.id, connect_timeout))),
         lockstep_(link_->pace() == hal::sim::Pace::lockstep),
@@ -46,7 +45,7 @@ class SimulatedHost {
   }
 
   void run() {
-    group_.start(Duration::zero());
+    group_.start(lockstep_ ? link_->board().sensors().stamp.time_since_epoch() : monotonic_now());
     while (!stop_.requested()) {
       const hal::Io io = link_->wait_sensors(std::chrono::milliseconds(100));
       if (io == hal::Io::error) {
@@ -89,7 +88,6 @@ class SimulatedHost {
     }
   }
 
-  const deploy::ModuleConfig& config_;
   const runtime::StopFlag& stop_;
   robot::Airframe airframe_;
   std::unique_ptr<hal::sim::SocketLink> link_;

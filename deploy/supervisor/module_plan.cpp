@@ -15,11 +15,12 @@ PlannedProcess plan_process(const std::string& name, const ModuleConfig& config,
                             const std::vector<std::string>& services) {
   PlannedProcess process{.name = name, .vendor = config.module_participant(name).vendor, .child = {}};
   process.child.name = name;
-  process.child.arguments = {program, "--config", config_file};
+  process.child.arguments = {program};
+  process.child.arguments.insert(process.child.arguments.end(), services.begin(), services.end());
+  process.child.arguments.insert(process.child.arguments.end(), {"--config", config_file});
   for (const std::string& assignment : assignments) {
     process.child.arguments.insert(process.child.arguments.end(), {"--set", assignment});
   }
-  process.child.arguments.insert(process.child.arguments.end(), services.begin(), services.end());
   return process;
 }
 

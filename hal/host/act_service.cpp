@@ -37,7 +37,8 @@ void ActService::step(TimePoint now) noexcept {
 
 void ActService::take_commands(TimePoint now) noexcept {
   while (const auto command = rotor_command_.take()) {
-    if (command->value.module_id != config_.module_id || command->value.rotors.size() != devices_.rotor_count) continue;
+    if (command->value.module_id != config_.module_id || command->value.rotors.size() != devices_.rotor_count)
+      continue;
     if (descent_.phase() != robot::SafePhase::idle) {
       report(now, msg::Severity::warning, "commands came back: the safe output ends");
       descent_.reset();
@@ -83,8 +84,8 @@ void ActService::write_safe_output(TimePoint now) noexcept {
     robot::Wrench feed_forward_W;
     if (hold) {
       // What the last command made beyond holding the weight: it fades, the hover wrench stays.
-      const auto wrench_B = robot::rotor_wrench_B(airframe_, std::span(held).first(devices_.rotor_count),
-                                                  robot::Vector3::Zero());
+      const auto wrench_B =
+          robot::rotor_wrench_B(airframe_, std::span(held).first(devices_.rotor_count), robot::Vector3::Zero());
       const robot::Matrix3& R = attitude_.R_WB();
       feed_forward_W = {R * wrench_B.force - robot::Vector3(0, 0, airframe_.mass_kg * robot::gravity_m_s2),
                         R * wrench_B.moment};
@@ -93,8 +94,7 @@ void ActService::write_safe_output(TimePoint now) noexcept {
                    feed_forward_W);
   }
   const double dt_s = std::clamp(to_s(now - last_step_), 0.0, 0.02);
-  const robot::Wrench wrench_B =
-      descent_.update(attitude_.R_WB(), attitude_.w_WB_B(), specific_force_M_, dt_s);
+  const robot::Wrench wrench_B = descent_.update(attitude_.R_WB(), attitude_.w_WB_B(), specific_force_M_, dt_s);
   if (descent_.finished()) {
     set_armed(false, now);
     return;
@@ -126,7 +126,8 @@ void ActService::watch_attitude() noexcept {
 
 void ActService::write_joints_and_latches() noexcept {
   while (const auto command = joint_command_.take()) {
-    if (command->value.module_id != config_.module_id || command->value.joints.size() != devices_.joint_count) continue;
+    if (command->value.module_id != config_.module_id || command->value.joints.size() != devices_.joint_count)
+      continue;
     std::array<JointSetpoint, robot::joints_max> setpoints{};
     for (std::size_t k = 0; k < command->value.joints.size(); ++k) {
       setpoints[k] = {command->value.joints[k].position_rad, command->value.joints[k].velocity_rad_s};

@@ -16,8 +16,8 @@ namespace eciton::hal {
 
 struct ActConfig {
   std::uint32_t module_id = 0;
-  double hold_s = 0.02;       // the last command stands for so long
-  double at_most_s = 0.004;   // steps without a command
+  double hold_s = 0.02;      // the last command stands for so long
+  double at_most_s = 0.004;  // steps without a command
 };
 
 class ActService final : public runtime::Service {

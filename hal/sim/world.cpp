@@ -191,8 +191,7 @@ void World::Impl::find_fault() {
   for (const int warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC, mjWARN_CNSTRFULL, mjWARN_CONTACTFULL}) {
     if (d->warning[warning].number == 0) continue;
     fault = Error{"the simulated world broke down " + std::to_string(steps) + " ms after its start: " +
-                  mju_warningText(warning, static_cast<std::size_t>(d->warning[warning].lastinfo)) + " seed " +
-                  std::to_string(config.seed)};
+                  mju_warningText(warning, d->warning[warning].lastinfo) + " seed " + std::to_string(config.seed)};
     return;
   }
 }

@@ -191,10 +191,17 @@ void ControlService::take_requests(TimePoint now) noexcept {
     answered_mode_ = request.correlation_id;
     FlightDecision decision{.mode = mode_};
     switch (request.action) {
-      case msg::ModeAction::arm: decision = decide(mode_, FlightRequest::arm, conditions_); break;
-      case msg::ModeAction::disarm: decision = decide(mode_, FlightRequest::disarm, conditions_); break;
-      case msg::ModeAction::stop: decision = decide(mode_, FlightRequest::stop, conditions_); break;
-      case msg::ModeAction::zero: break;  // estimation's
+      case msg::ModeAction::arm:
+        decision = decide(mode_, FlightRequest::arm, conditions_);
+        break;
+      case msg::ModeAction::disarm:
+        decision = decide(mode_, FlightRequest::disarm, conditions_);
+        break;
+      case msg::ModeAction::stop:
+        decision = decide(mode_, FlightRequest::stop, conditions_);
+        break;
+      case msg::ModeAction::zero:
+        break;  // estimation's
     }
     mode_ = decision.mode;
     answer(msg::GoalKind::mode, request.correlation_id,
@@ -232,7 +239,8 @@ void ControlService::take_flight_goals(TimePoint now) noexcept {
 
 FlightDecision ControlService::decide_goal(const msg::FlightGoal& goal) const noexcept {
   switch (goal.action) {
-    case msg::FlightAction::takeoff: return decide(mode_, FlightRequest::takeoff, conditions_);
+    case msg::FlightAction::takeoff:
+      return decide(mode_, FlightRequest::takeoff, conditions_);
     case msg::FlightAction::goto_:
       if (docking_.phase != msg::DockingPhase::idle && docking_.phase != msg::DockingPhase::docked) {
         return {mode_, false, "docking is under way: wait until it is done"};
@@ -241,7 +249,8 @@ FlightDecision ControlService::decide_goal(const msg::FlightGoal& goal) const no
     case msg::FlightAction::land:
       if (in_chain()) return {mode_, false, "a chain does not land: undock first"};
       return decide(mode_, FlightRequest::land, conditions_);
-    case msg::FlightAction::track: break;
+    case msg::FlightAction::track:
+      break;
   }
   return {mode_, false, "not a goal for an operator"};
 }
@@ -269,7 +278,8 @@ void ControlService::begin(const msg::FlightGoal& goal, TimePoint now) noexcept 
       touchdown_.reset();
       reference_.descend(config_.landing_m_s, now_s);
       break;
-    case msg::FlightAction::track: break;
+    case msg::FlightAction::track:
+      break;
   }
 }
 
@@ -295,9 +305,9 @@ void ControlService::judge(TimePoint now) noexcept {
   const bool good = conditions_.state_usable && conditions_.state_age_s <= limits.state_age_s_max;
   conditions_.state_good_s = good ? conditions_.state_good_s + dt_s : 0;
   conditions_.trajectory_finished = goal_pending_ && reference_.arrived(seconds(now));
-  conditions_.landed = mode_ == FlightMode::land &&
-                       touchdown_.update(allocation_.achieved_B.force.norm(),
-                                         airframe_.mass_kg * robot::gravity_m_s2, motion_.v_WM.z(), dt_s);
+  conditions_.landed =
+      mode_ == FlightMode::land && touchdown_.update(allocation_.achieved_B.force.norm(),
+                                                     airframe_.mass_kg * robot::gravity_m_s2, motion_.v_WM.z(), dt_s);
   conditions_.duplicate_id = duplicate_id_;
 }
 
@@ -323,20 +333,21 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   const double dt_s = first_step_ ? config_.period_s : std::clamp(to_s(now - last_step_), 1e-4, 0.02);
   const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
   const robot::Wrench feed_forward_W =
-      in_chain() ? law_.feed_forward_W()
-                 : feedback_.update(config_.disturbance_feedback ? external_W_ : robot::Wrench{},
-                                    feedback_phase(docking_.phase != msg::DockingPhase::idle, docking_.commanded_gap_m,
-                                                   docking_.declared_by != msg::DeclaredBy::nothing),
-                                    dt_s);
-  const robot::Wrench demanded_B = pose_control_.update(
-      {.state = motion_,
-       .reference = reference_.at(seconds(now)),
-       .mass_kg = airframe_.mass_kg,
-       .I_M_kg_m2 = robot::composite_inertia(airframe_, joint_angles()),
-       .feed_forward_W = feed_forward_W,
-       .force_saturated = allocation_.force_scale < 1 || allocation_.thrust_limited,
-       .moment_saturated = allocation_.moment_scale < 1},
-      dt_s);
+      in_chain()
+          ? law_.feed_forward_W()
+          : feedback_.update(config_.disturbance_feedback ? external_W_ : robot::Wrench{},
+                             feedback_phase(docking_.phase != msg::DockingPhase::idle, docking_.commanded_gap_m,
+                                            docking_.declared_by != msg::DeclaredBy::nothing),
+                             dt_s);
+  const robot::Wrench demanded_B =
+      pose_control_.update({.state = motion_,
+                            .reference = reference_.at(seconds(now)),
+                            .mass_kg = airframe_.mass_kg,
+                            .I_M_kg_m2 = robot::composite_inertia(airframe_, joint_angles()),
+                            .feed_forward_W = feed_forward_W,
+                            .force_saturated = allocation_.force_scale < 1 || allocation_.thrust_limited,
+                            .moment_saturated = allocation_.moment_scale < 1},
+                           dt_s);
   allocation_ = allocator_.update(demanded_B, c_B);
 
   msg::RotorCommand out;
@@ -345,7 +356,8 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   out.state_stamp_ns = state_.stamp_ns;
   out.armed = true;
   out.safe_output = in_chain() ? msg::SafeOutput::hold_hover : msg::SafeOutput::descend;
-  for (const robot::RotorOutput& rotor : allocation_.outputs()) out.rotors.push_back({rotor.thrust_N, rotor.gimbal_rad});
+  for (const robot::RotorOutput& rotor : allocation_.outputs())
+    out.rotors.push_back({rotor.thrust_N, rotor.gimbal_rad});
   rotor_command_.write(out);
 }
 

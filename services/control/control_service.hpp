@@ -21,13 +21,13 @@ namespace eciton::control {
 
 struct ControlConfig {
   std::uint32_t module_id = 0;
-  double period_s = 0.002;             // its own pace, where states come slower
+  double period_s = 0.002;  // its own pace, where states come slower
   std::string law = "local";
-  bool disturbance_feedback = true;    // the observer's wrench fed back in free flight
+  bool disturbance_feedback = true;  // the observer's wrench fed back in free flight
   double takeoff_m_s = 0.5;
   double landing_m_s = 0.3;
   double speed_m_s = 0.5;
-  double observer_gain_1_s = 10;       // as estimation's config says: the law's rate follows from it
+  double observer_gain_1_s = 10;  // as estimation's config says: the law's rate follows from it
 
   template <class V>
   void visit_fields(V& v) {
@@ -90,17 +90,17 @@ class ControlService final : public runtime::Service {
   FlightConditions conditions_;
   TimePoint law_updated_{};
 
-  TimePoint epoch_{};           // of `seconds`: the first step
+  TimePoint epoch_{};  // of `seconds`: the first step
   TimePoint last_step_{};
   bool first_step_ = true;
-  msg::ModuleState state_;      // the newest
+  msg::ModuleState state_;  // the newest
   TimePoint state_at_{};
-  ModuleMotion motion_;         // extrapolated to now
+  ModuleMotion motion_;  // extrapolated to now
   std::array<double, robot::joints_max> joint_rad_{};
   robot::Wrench external_W_;
   bool duplicate_id_ = false;
   msg::DockingState docking_;
-  msg::ChainView view_;         // the active one
+  msg::ChainView view_;  // the active one
   robot::Allocation allocation_;
 
   // Of the other members: where they are and how their joints stand, for joining.
@@ -112,7 +112,7 @@ class ControlService final : public runtime::Service {
   std::array<Peer, robot::members_max> peers_{};
   Peer* peer(std::uint32_t module_id) noexcept;
 
-  msg::FlightGoal goal_;        // the one being flown
+  msg::FlightGoal goal_;  // the one being flown
   bool goal_pending_ = false;
   std::uint64_t answered_mode_ = 0, answered_flight_ = 0, answered_morph_ = 0;
   FlightMode reported_mode_ = FlightMode::disarmed;

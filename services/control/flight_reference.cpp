@@ -92,7 +92,8 @@ PoseReference FlightReference::own_part(double now_s) const {
 PoseReference FlightReference::at(double now_s) const {
   if (in_chain_) return own_part(now_s);
   switch (kind_) {
-    case Kind::motion: return motion_.at(now_s);
+    case Kind::motion:
+      return motion_.at(now_s);
     case Kind::descend: {
       PoseReference r = tracked_;
       r.p_WM += r.v_WM * (now_s - tracked_s_);

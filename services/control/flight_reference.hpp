@@ -13,8 +13,8 @@
 namespace eciton::control {
 
 struct FlightReferenceConfig {
-  double speed_m_s = 0.5;          // of a goto without one
-  double track_hold_s = 0.2;       // a tracked reference older than this stands still
+  double speed_m_s = 0.5;     // of a goto without one
+  double track_hold_s = 0.2;  // a tracked reference older than this stands still
   robot::TrajectoryLimits limits;
 };
 
@@ -64,7 +64,7 @@ class FlightReference {
   robot::Airframe airframe_;
   FlightReferenceConfig config_;
   Kind kind_ = Kind::motion;
-  robot::PoseMotion motion_;        // apart: of M; in a chain: of the base's M, as all members know it
+  robot::PoseMotion motion_;  // apart: of M; in a chain: of the base's M, as all members know it
   robot::PoseReference tracked_;
   double tracked_s_ = 0;
 
@@ -72,7 +72,7 @@ class FlightReference {
   ChainPlace place_;
   robot::Vector3 offset_p_ = robot::Vector3::Zero();      // from what the shared base says to where this
   robot::Matrix3 offset_R_ = robot::Matrix3::Identity();  // module sees itself, fixed when it joined
-  robot::JointTrajectory joints_;   // of all members
+  robot::JointTrajectory joints_;                         // of all members
 };
 
 }  // namespace eciton::control

@@ -69,6 +69,7 @@ Vector3 ApproachPath::direction_of_motion(const Vector3& waypoint, double reach_
 }
 
 void ApproachPath::update(double dt_s, double gap_m, std::span<const Vector3> bodies_T) {
+  if (!(dt_s > 0)) return;
   goal_ = (gap_m + config_.port_to_body_m) * outward_;
   const bool barred =
       bars_the_way(-config_.port_to_body_m * outward_) ||

@@ -57,7 +57,8 @@ void DockingSequence::enter(DockingPhase phase) {
 const DockingOutputs& DockingSequence::update(double dt_s, const DockingInputs& in) {
   out_.measured = relation(in.X_TF, target_port_);
   out_.v_TF_reference.setZero();
-  if (out_.outcome != Outcome::running || give_up(in)) return out_;
+  // No time has passed on a first step, or where a clock stands still.
+  if (out_.outcome != Outcome::running || !(dt_s > 0) || give_up(in)) return out_;
   in_phase_s_ += dt_s;
   switch (out_.phase) {
     case DockingPhase::align:

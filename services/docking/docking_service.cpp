@@ -11,9 +11,7 @@ namespace {
 
 constexpr chain::FreshnessConfig freshness;
 
-bool in_the_air(msg::FlightMode mode) {
-  return mode == msg::FlightMode::hover || mode == msg::FlightMode::move;
-}
+bool in_the_air(msg::FlightMode mode) { return mode == msg::FlightMode::hover || mode == msg::FlightMode::move; }
 
 }  // namespace
 
@@ -65,7 +63,8 @@ DockingService::Module* DockingService::find(std::uint32_t id) noexcept {
 }
 
 bool DockingService::near() const {
-  return following_ || is_target_ || (membership_.agreement().active() && membership_.agreement().active()->epoch != 0);
+  return following_ || is_target_ ||
+         (membership_.agreement().active() && membership_.agreement().active()->epoch != 0);
 }
 
 bool DockingService::is_fresh(const Module& module, TimePoint now) const {
@@ -191,9 +190,9 @@ void DockingService::dock(const msg::DockGoal& goal, TimePoint now) noexcept {
   const auto choice = choose_ports({own_ports.data(), own_ports.size()}, {target_ports.data(), target_ports.size()},
                                    config_.sequence.standoff_m);
   const bool same_chain = std::find(component.begin(), component.end(), config_.module_id) != component.end();
-  const DockAnswer verdict = refuse_dock(candidate(&own(), config_.module_id, now),
-                                         candidate(find(goal.target_id), goal.target_id, now), same_chain,
-                                         choice.has_value());
+  const DockAnswer verdict =
+      refuse_dock(candidate(&own(), config_.module_id, now), candidate(find(goal.target_id), goal.target_id, now),
+                  same_chain, choice.has_value());
   if (verdict.refusal != DockRefusal::none) {
     refuse(verdict.text().view());
     return;
@@ -271,14 +270,14 @@ void DockingService::follow(TimePoint now, double dt_s) noexcept {
   }
   // The peer's latch is not ours to read: its claim on its port says that it has let go.
   const bool peer_holds = membership_.linked(pairing_.peer, pairing_.peer_port);
-  const DockingOutputs& out = follower_.update(
-      dt_s, {.X_TF = X_WT.inverse() * X_WF,
-             .push_N = push_N_,
-             .latch = membership_.latch(pairing_.port),
-             .target_latch = peer_holds ? chain::LatchStatus::latched : chain::LatchStatus::open,
-             .target_fresh = fresh,
-             .view_active = membership_.active_with(pairing_.peer),
-             .bodies_T = {others_T.data(), others_T.size()}});
+  const DockingOutputs& out =
+      follower_.update(dt_s, {.X_TF = X_WT.inverse() * X_WF,
+                              .push_N = push_N_,
+                              .latch = membership_.latch(pairing_.port),
+                              .target_latch = peer_holds ? chain::LatchStatus::latched : chain::LatchStatus::open,
+                              .target_fresh = fresh,
+                              .view_active = membership_.active_with(pairing_.peer),
+                              .bodies_T = {others_T.data(), others_T.size()}});
   tell_latch(pairing_.port, out.engage_latch, now);
   if (out.phase != DockingPhase::idle && out.phase != DockingPhase::docked && out.phase != DockingPhase::release) {
     write_reference(now);
@@ -320,8 +319,8 @@ void DockingService::be_target(TimePoint now, double dt_s) noexcept {
       // Coming, or asking to be let go while our latch still holds; not on its way out.
       const bool comes = d.phase == msg::DockingPhase::align || d.phase == msg::DockingPhase::approach ||
                          d.phase == msg::DockingPhase::assembly || d.phase == msg::DockingPhase::recover;
-      const bool asks_to_go = d.phase == msg::DockingPhase::release &&
-                              membership_.latch(d.peer_port) == chain::LatchStatus::latched;
+      const bool asks_to_go =
+          d.phase == msg::DockingPhase::release && membership_.latch(d.peer_port) == chain::LatchStatus::latched;
       if (!comes && !asks_to_go) continue;
       pairing_ = {m.id, d.peer_port, d.port};
       membership_.expect(pairing_.port, pairing_.peer, pairing_.peer_port);
@@ -393,7 +392,8 @@ void DockingService::write_state(TimePoint now) noexcept {
   const bool active = following_ || is_target_;
   if (out.phase != state_.phase) {
     const auto& names = bus::EnumTraits<msg::DockingPhase>::names;
-    msg::Event event{.module_id = config_.module_id, .stamp_ns = to_ns(now), .service = "docking", .machine = "docking"};
+    msg::Event event{
+        .module_id = config_.module_id, .stamp_ns = to_ns(now), .service = "docking", .machine = "docking"};
     event.from = names[static_cast<std::size_t>(state_.phase)];
     event.to = names[static_cast<std::size_t>(out.phase)];
     event_.write(event);

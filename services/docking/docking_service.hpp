@@ -20,11 +20,11 @@ struct DockingServiceConfig {
   std::uint32_t module_id = 0;
   std::uint64_t incarnation = 1;
   double rate_Hz = 100;
-  double state_rate_Hz = 20;        // of docking_state while docking; it is published on every change besides
-  double target_filter_s = 0.2;     // the reference follows the target's pose smoothed by this
-  double push_bias_s = 1.0;         // the push before contact, smoothed by this, counts as none
+  double state_rate_Hz = 20;     // of docking_state while docking; it is published on every change besides
+  double target_filter_s = 0.2;  // the reference follows the target's pose smoothed by this
+  double push_bias_s = 1.0;      // the push before contact, smoothed by this, counts as none
   bool require_zeroed = true;
-  bool claims_muted = false;        // an experiment's control
+  bool claims_muted = false;  // an experiment's control
   DockingConfig sequence;
   TargetConfig target;
 
@@ -108,13 +108,13 @@ class DockingService final : public runtime::Service {
   std::array<Module, 33> modules_{};  // ourselves first
   robot::Wrench external_W_;
 
-  Pairing pairing_;                   // of the docking we follow or are the target of
+  Pairing pairing_;  // of the docking we follow or are the target of
   bool following_ = false;
   bool is_target_ = false;
   std::uint64_t goal_id_ = 0;
   std::uint64_t answered_ = 0;
   bool goal_pending_ = false;
-  robot::Pose X_WT_;                  // the target's port, smoothed
+  robot::Pose X_WT_;  // the target's port, smoothed
   bool X_WT_known_ = false;
   double push_bias_N_ = 0;
   double push_N_ = 0;

@@ -58,7 +58,8 @@ void Membership::expect(std::uint32_t port, std::uint32_t peer, std::uint32_t pe
 
 void Membership::update(TimePoint now, std::span<const chain::PeerStatus> peers) noexcept {
   take(now);
-  for (std::uint32_t port = 0; port < config_.ports; ++port) claim(port);
+  if (!started_) started_ = now;
+  for (std::uint32_t port = 0; port < config_.ports; ++port) claim(port, now);
   agreement_.update(now, claims_, announcements_, peers);
   publish(now);
 }
@@ -78,13 +79,14 @@ void Membership::take(TimePoint) noexcept {
   }
 }
 
-void Membership::claim(std::uint32_t port) noexcept {
+void Membership::claim(std::uint32_t port, TimePoint now) noexcept {
   Latch& latch = latches_[port];
   if (!latch.known) return;
   chain::Claim claim{.module = config_.module_id, .port = port, .latch = latch.status};
   if (latch.status == chain::LatchStatus::latched) {
     if (latch.peer == 0) {
-      // After a restart: whoever claims this port is in it.
+      // After a restart: whoever claims this port is in it. An old claim that comes late must not win.
+      if (now - *started_ < from_s(config_.listen_s)) return;
       const chain::Claim* claimant = claims_.claimant_of(config_.module_id, port);
       if (claimant == nullptr) return;
       latch.peer = claimant->module;

@@ -16,8 +16,9 @@ struct MembershipConfig {
   std::uint32_t module_id = 0;
   std::uint64_t incarnation = 1;
   std::uint32_t ports = 2;
-  bool claims_muted = false;   // an experiment's control: claims are made but never published
-  double repeat_s = 1.0;       // what is announced is said again so often: a late listener needs no history
+  bool claims_muted = false;  // an experiment's control: claims are made but never published
+  double listen_s = 0.5;      // after a start, before somebody's claim is believed to name our port's peer
+  double repeat_s = 1.0;      // what is announced is said again so often: a late listener needs no history
 };
 
 class Membership {
@@ -47,7 +48,7 @@ class Membership {
   };
 
   void take(TimePoint now) noexcept;
-  void claim(std::uint32_t port) noexcept;
+  void claim(std::uint32_t port, TimePoint now) noexcept;
   void publish(TimePoint now) noexcept;
 
   MembershipConfig config_;
@@ -63,6 +64,7 @@ class Membership {
   std::uint64_t published_epoch_ = 0;
   bool published_active_ = false;
   TimePoint repeat_due_{};
+  std::optional<TimePoint> started_;
 
   bus::Reader<msg::LatchState> latch_state_;
   bus::Reader<msg::LinkClaim> link_claims_;

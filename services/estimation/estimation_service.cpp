@@ -60,8 +60,8 @@ void EstimationService::take_sensors() noexcept {
     const msg::PoseMeasurement& m = pose->value;
     if (m.module_id != config_.module_id) continue;
     const std::uint64_t restarts = filter_.counters().restarts;
-    filter_.update(PoseMeasurement{m.stamp_ns, {robot::vector(m.p_WB_m), robot::rotation(m.q_WB)},
-                                   m.position_std_m, m.attitude_std_rad});
+    filter_.update(PoseMeasurement{
+        m.stamp_ns, {robot::vector(m.p_WB_m), robot::rotation(m.q_WB)}, m.position_std_m, m.attitude_std_rad});
     if (filter_.counters().restarts != restarts) observer_.hold();
   }
   estimate_ = filter_.estimate();
@@ -225,7 +225,8 @@ void EstimationService::publish_contact_wrench(TimePoint now) noexcept {
 void EstimationService::report_mode(TimePoint now) noexcept {
   const msg::EstimatorMode mode = to_message(estimate_.mode);
   if (mode == reported_mode_) return;
-  msg::Event out{.module_id = config_.module_id, .stamp_ns = to_ns(now), .service = "estimation", .machine = "filter"};
+  msg::Event out{
+      .module_id = config_.module_id, .stamp_ns = to_ns(now), .service = "estimation", .machine = "filter"};
   out.from = bus::EnumTraits<msg::EstimatorMode>::names[static_cast<std::size_t>(reported_mode_)];
   out.to = bus::EnumTraits<msg::EstimatorMode>::names[static_cast<std::size_t>(mode)];
   event_.write(out);

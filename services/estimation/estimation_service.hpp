@@ -22,7 +22,7 @@ struct EstimationConfig {
   std::uint32_t module_id = 0;
   double wrench_rate_Hz = 100;
   double observer_gain_1_s = 10;
-  bool zeroing = true;             // false: a controller on wrenches that were never zeroed (an experiment's control)
+  bool zeroing = true;  // false: a controller on wrenches that were never zeroed (an experiment's control)
 
   template <class V>
   void visit_fields(V& v) {
@@ -72,11 +72,11 @@ class EstimationService final : public runtime::Service {
   };
   Estimate estimate_;
   CentreOfMass state_;
-  robot::Wrench external_W_;        // about the composite centre of mass, bias removed
+  robot::Wrench external_W_;  // about the composite centre of mass, bias removed
   msg::ExternalWrench own_;
 
-  msg::ChainView view_;             // the active one
-  bool touching_ = false;           // or about to: the zero stays as it is
+  msg::ChainView view_;                          // the active one
+  bool touching_ = false;                        // or about to: the zero stays as it is
   std::array<msg::ExternalWrench, 16> heard_{};  // by place in the chain
   std::array<TimePoint, 16> heard_at_{};
 

@@ -55,7 +55,8 @@ void JointsService::straighten(TimePoint now) noexcept {
   std::array<double, robot::joints_max> position_rad{};
   const std::size_t each = airframe_.joints.size();
   for (std::size_t k = 0; k < each; ++k) {
-    position_rad[k] = in_chain_ ? trajectory_.at(place_ * each + k, seconds(now)).position : own_.joints[k].position_rad;
+    position_rad[k] =
+        in_chain_ ? trajectory_.at(place_ * each + k, seconds(now)).position : own_.joints[k].position_rad;
   }
   in_chain_ = false;
   place_ = 0;
@@ -89,8 +90,8 @@ void JointsService::enter_chain(TimePoint now) noexcept {
   const std::size_t own_before = place_;
   for (std::size_t i = 0; i < view_.members.size(); ++i) {
     const std::uint32_t id = view_.members[i];
-    const auto heard = std::find_if(heard_.begin(), heard_.end(),
-                                    [id](const msg::JointState& s) { return s.module_id == id; });
+    const auto heard =
+        std::find_if(heard_.begin(), heard_.end(), [id](const msg::JointState& s) { return s.module_id == id; });
     for (std::size_t k = 0; k < each; ++k) {
       double& angle_rad = position_rad[i * each + k];
       if (id == config_.module_id) {
@@ -117,7 +118,8 @@ void JointsService::take_goals(TimePoint now) noexcept {
       continue;
     }
     if (goal.epoch != view_.active_epoch) {
-      answer(goal, msg::GoalPhase::refused, "the chain has changed since this goal was made: look and ask again", now);
+      answer(goal, msg::GoalPhase::refused, "the chain has changed since this goal was made: look and ask again",
+             now);
       continue;
     }
     // Every member plans the whole chain's motion, so that all take the same time.

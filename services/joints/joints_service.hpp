@@ -50,7 +50,7 @@ class JointsService final : public runtime::Service {
   bool in_chain_ = false;
   TimePoint epoch_{};
   bool first_step_ = true;
-  msg::ChainView view_;                // the active one
+  msg::ChainView view_;                                      // the active one
   std::array<msg::JointState, robot::members_max> heard_{};  // peers' joints
   msg::JointState own_;
   msg::MorphGoal goal_;

@@ -123,13 +123,15 @@ void RadioService::forward_in(Route& route) noexcept {
 void RadioService::watch_own_module() noexcept {
   while (const auto state = docking_state_.take()) {
     const bool own = state->value.module_id == config_.module_id;
-    const bool names_us = state->value.peer_id == config_.module_id && state->value.role == msg::DockingRole::follower;
+    const bool names_us =
+        state->value.peer_id == config_.module_id && state->value.role == msg::DockingRole::follower;
     if (own) docking_ = state->value.phase != msg::DockingPhase::idle;
     // A follower that approaches us hears our wrench before our own docking service has noticed it.
     if (names_us) courted_ = state->value.phase != msg::DockingPhase::idle;
   }
   while (const auto view = chain_view_.take()) {
-    if (view->value.module_id == config_.module_id) chained_ = view->value.members.size() > 1 || view->value.epoch != 0;
+    if (view->value.module_id == config_.module_id)
+      chained_ = view->value.members.size() > 1 || view->value.epoch != 0;
   }
   const msg::Beacon before = beacon_;
   while (const auto state = module_state_.take()) {

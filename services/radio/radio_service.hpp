@@ -18,7 +18,7 @@ namespace eciton::radio {
 
 struct RadioConfig {
   std::uint32_t module_id = 0;
-  std::string name;      // of the module
+  std::string name;  // of the module
   std::string airframe;
   std::uint64_t incarnation = 1;
   double period_s = 0.01;
@@ -48,7 +48,9 @@ class RadioService final : public runtime::Service {
   ~RadioService() override;
 
   std::string_view name() const override { return "radio"; }
-  runtime::Schedule schedule() override { return runtime::every(from_s(config_.period_s), runtime::Phase::coordinate); }
+  runtime::Schedule schedule() override {
+    return runtime::every(from_s(config_.period_s), runtime::Phase::coordinate);
+  }
   void step(TimePoint now) noexcept override;
 
  private:
@@ -70,9 +72,9 @@ class RadioService final : public runtime::Service {
   TimePoint now_{};
   TimePoint beacon_due_{};
   int urgent_beacons_ = 0;
-  bool near_ = false;       // approaching or in a chain: wrenches go out
+  bool near_ = false;  // approaching or in a chain: wrenches go out
   bool docking_ = false;
-  bool courted_ = false;    // a peer approaches us
+  bool courted_ = false;  // a peer approaches us
   bool chained_ = false;
   DuplicateId own_id_;
   bool duplicate_id_ = false;

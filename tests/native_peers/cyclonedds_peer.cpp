@@ -20,7 +20,7 @@ struct Text<char[Size]> {
   static std::string get(const char (&field)[Size]) { return field; }
 };
 template <class T>
-  requires requires(T sequence) { sequence._buffer; }
+requires requires(T sequence) { sequence._buffer; }
 struct Sequence<T> {
   static constexpr bool is_sequence = true;
   using Element = std::remove_pointer_t<decltype(T::_buffer)>;
@@ -52,8 +52,7 @@ dds_entity_t join(std::uint32_t domain) {
 template <class Sample>
 class CycloneChannel final : public Channel {
  public:
-  CycloneChannel(dds_entity_t participant, const char* topic, const dds_topic_descriptor_t& descriptor,
-                 TopicQos qos)
+  CycloneChannel(dds_entity_t participant, const char* topic, const dds_topic_descriptor_t& descriptor, TopicQos qos)
       : participant_(participant), name_(topic), descriptor_(descriptor), qos_(qos) {
     topic_ = dds_create_topic(participant, &descriptor, topic, nullptr, nullptr);
     if (topic_ < 0) std::exit(1);
@@ -140,9 +139,9 @@ class CycloneChannel final : public Channel {
 Channels channels(std::uint32_t domain) {
   const dds_entity_t participant = join(domain);
   Channels all;
-#define TOPIC(name, type, reliable, transient_local, depth)                                          \
-  all.push_back(std::make_unique<CycloneChannel<eciton_msg_##type>>(                                 \
-      participant, #name, eciton_msg_##type##_desc, TopicQos{reliable, transient_local, depth}));
+#define TOPIC(name, type, reliable, transient_local, depth)                                                       \
+  all.push_back(std::make_unique<CycloneChannel<eciton_msg_##type>>(participant, #name, eciton_msg_##type##_desc, \
+                                                                    TopicQos{reliable, transient_local, depth}));
 #include "tests/native_peers/topics.def"
 #undef TOPIC
   return all;

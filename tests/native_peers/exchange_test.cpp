@@ -74,7 +74,9 @@ std::vector<std::unique_ptr<OurChannel>> channels(bus::Participant& participant)
 
 class ExchangeTest : public testing::TestWithParam<std::tuple<const char*, const char*>> {
  protected:
-  static std::string peer() { return beside_this_program("native_" + std::string(std::get<0>(GetParam())) + "_peer"); }
+  static std::string peer() {
+    return beside_this_program("native_" + std::string(std::get<0>(GetParam())) + "_peer");
+  }
   static bus::ParticipantConfig config(std::uint32_t domain) {
     bus::ParticipantConfig config;
     config.vendor = std::get<1>(GetParam());
@@ -94,7 +96,8 @@ TEST_P(ExchangeTest, ANativeWriterReachesOurReaderOnEveryTopic) {
   while (!std::all_of(seen.begin(), seen.end(), [](std::uint64_t s) { return s == kAll; }) &&
          std::chrono::steady_clock::now() < end) {
     for (std::size_t k = 0; k < readers.size(); ++k) {
-      ASSERT_TRUE(readers[k]->read(seen[k])) << readers[k]->topic() << ": a sample with other values than were written";
+      ASSERT_TRUE(readers[k]->read(seen[k]))
+          << readers[k]->topic() << ": a sample with other values than were written";
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }

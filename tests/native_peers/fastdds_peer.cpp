@@ -1,4 +1,5 @@
 // A program that knows Eciton only by its IDL, on Fast DDS and what fastddsgen makes of it.
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -6,7 +7,6 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
 #include "native_fastdds/all.hpp"
 #include "tests/native_peers/peer_main.hpp"
@@ -133,8 +133,8 @@ class FastChannel final : public Channel {
 Channels channels(std::uint32_t domain) {
   const Node node = join(domain);
   Channels all;
-#define TOPIC(name, type, reliable, transient_local, depth)                                                  \
-  all.push_back(std::make_unique<FastChannel<eciton::msg::type, eciton::msg::type##PubSubType>>(             \
+#define TOPIC(name, type, reliable, transient_local, depth)                                      \
+  all.push_back(std::make_unique<FastChannel<eciton::msg::type, eciton::msg::type##PubSubType>>( \
       node, #name, TopicQos{reliable, transient_local, depth}));
 #include "tests/native_peers/topics.def"
 #undef TOPIC

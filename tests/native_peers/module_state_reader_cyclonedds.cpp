@@ -1,5 +1,6 @@
 // Example: where the modules are, read by a program that shares nothing with Eciton but idl/state.idl, with Cyclone
-// DDS. Usage: module_state_reader_cyclonedds DOMAIN [SECONDS]. A module's own ring is domain 10 + its id, on loopback.
+// DDS. Usage: module_state_reader_cyclonedds DOMAIN [SECONDS]. A module's own ring is domain 10 + its id, on
+// loopback.
 #include <dds/dds.h>
 #undef restrict
 
@@ -44,8 +45,8 @@ int main(int count, char** arguments) {
       if (!infos[k].valid_data) continue;
       const auto* state = static_cast<const eciton_msg_ModuleState*>(samples[k]);
       std::printf("module %u at (%7.3f %7.3f %7.3f) m, q (%6.3f %6.3f %6.3f %6.3f)\n", state->module_id,
-                  state->p_WM_m[0], state->p_WM_m[1], state->p_WM_m[2], state->q_WM[0], state->q_WM[1], state->q_WM[2],
-                  state->q_WM[3]);
+                  state->p_WM_m[0], state->p_WM_m[1], state->p_WM_m[2], state->q_WM[0], state->q_WM[1],
+                  state->q_WM[2], state->q_WM[3]);
     }
     if (taken > 0) dds_return_loan(reader, samples, taken);
     std::fflush(stdout);

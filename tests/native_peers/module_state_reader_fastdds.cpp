@@ -1,5 +1,6 @@
 // Example: where the modules are, read by a program that shares nothing with Eciton but idl/state.idl, with Fast DDS.
 // Usage: module_state_reader_fastdds DOMAIN [SECONDS]. A module's own ring is domain 10 + its id, on loopback.
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -9,7 +10,6 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <thread>
 
 #include "native_fastdds/statePubSubTypes.h"

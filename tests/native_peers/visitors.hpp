@@ -17,12 +17,17 @@ namespace eciton::native_peers {
 template <class T>
 struct Text;  // static void assign(T&, const std::string&); static std::string get(const T&)
 template <class T>
-struct Sequence;  // static void resize(T&, uint32_t); static uint32_t size(const T&); static Element& at(T&, uint32_t)
+struct Sequence;  // static void resize(T&, uint32_t); static uint32_t size(const T&); static Element& at(T&,
+                  // uint32_t)
 
 template <class T>
-concept IsText = requires { Text<T>::is_text; };
+concept IsText = requires {
+  Text<T>::is_text;
+};
 template <class T>
-concept IsSequence = requires { Sequence<T>::is_sequence; };
+concept IsSequence = requires {
+  Sequence<T>::is_sequence;
+};
 template <class T>
 concept IsArray = !IsText<T> && (std::is_array_v<T> || requires { std::tuple_size<T>::value; });
 

@@ -21,7 +21,9 @@ class WastefulService final : public runtime::Service {
  public:
   std::string_view name() const override { return "wasteful"; }
   runtime::Schedule schedule() override { return runtime::every(from_s(0.01), runtime::Phase::coordinate); }
-  void step(TimePoint now) noexcept override { kept_ = std::vector<double>(1 + static_cast<std::size_t>(to_ns(now) % 7)); }
+  void step(TimePoint now) noexcept override {
+    kept_ = std::vector<double>(1 + static_cast<std::size_t>(to_ns(now) % 7));
+  }
 
  private:
   std::vector<double> kept_;
@@ -32,7 +34,8 @@ TEST(StepAllocationTest, AServiceThatUsesTheHeapIsCaught) {
   Simulation simulation(row_of(1, 11));
   WastefulService wasteful;
   simulation.executor()
-      .add_module({.module_id = 1, .process = "wasteful", .heartbeat_period = Duration::zero()}, {&simulation.listener(0)})
+      .add_module({.module_id = 1, .process = "wasteful", .heartbeat_period = Duration::zero()},
+                  {&simulation.listener(0)})
       .add(wasteful);
   simulation.executor().run_until(simulation.now() + from_s(0.1));
   testing::AllocationGuard guard;

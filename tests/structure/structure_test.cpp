@@ -77,9 +77,12 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"MathsHasThreads", "services/control/a.cpp", "#include <thread>"},
         Case{"MathsReadsTheSystem", "services/control/a.cpp", "#include <sys/time.h>"},
         Case{"OnlyDockingKnowsTheChain", "services/joints/a.cpp", "#include \"core/chain/view.hpp\""},
+        Case{"MathsPrints", "services/control/a.cpp", "std::printf(\"here\");"},
         Case{"MathsAsksAClock", "services/control/a.cpp", "auto t = std::chrono::steady_clock::now();"},
         Case{"ServiceAsksAClock", "services/control/control_service.cpp",
              "auto t = std::chrono::system_clock::now();"},
+        Case{"ServiceIncludesTheClock", "services/control/control_service.cpp",
+             "#include \"core/base/wall_clock.hpp\""},
         Case{"ServiceKnowsAnother", "services/control/control_service.cpp",
              "#include \"services/estimation/observer.hpp\""},
         Case{"ServiceKnowsHardware", "services/joints/joints_service.cpp", "#include \"hal/interfaces.hpp\""},
@@ -108,6 +111,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"MathsWithEigen", "services/control/a.hpp",
              "#include <Eigen/Dense>\n#include <cmath>\n#include \"core/robot/frames.hpp\"\n"
              "#include \"services/control/b.hpp\""},
+        Case{"MathsThatWritesAMessage", "services/control/a.cpp",
+             "#include <cstdio>\nstd::snprintf(text, 8, \"here\");"},
         Case{"DockingWithTheChain", "services/docking/a.hpp", "#include \"core/chain/view.hpp\""},
         Case{"ServiceWithItsMaths", "services/control/control_service.hpp",
              "#include \"services/control/a.hpp\"\n#include \"core/runtime/service.hpp\"\n#include "

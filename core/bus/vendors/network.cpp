@@ -67,8 +67,8 @@ Result<std::vector<std::string>> peer_addresses(const char* const* peers, std::u
 }
 
 int unicast_participants(const std::vector<std::string>& peers) {
-  const bool loopback = std::all_of(peers.begin(), peers.end(),
-                                    [](const std::string& peer) { return peer.starts_with("127."); });
+  const bool loopback =
+      std::all_of(peers.begin(), peers.end(), [](const std::string& peer) { return peer.starts_with("127."); });
   return loopback ? kUnicastParticipantsOnLoopback : kUnicastParticipantsPerHost;
 }
 

@@ -2,8 +2,8 @@
 //
 // Fast DDS 2.9 announces itself some instants before it listens, and a participant that hears of it answers once and
 // at once: that answer may be lost, and the next comes with the periodic announcement (measured with six processes on
-// a busy machine: one start in ten had a pair that met 1 s late). So whoever discovers a Fast DDS participant says its
-// own name again a little later.
+// a busy machine: one start in ten had a pair that met 1 s late). So whoever discovers a Fast DDS participant says
+// its own name again a little later.
 #pragma once
 
 #include <chrono>

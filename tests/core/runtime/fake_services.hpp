@@ -33,7 +33,7 @@ class FakeEstimation final : public Service {
       : imu_(ring.create_reader(topics::imu)),
         state_(ring.create_writer(topics::module_state)),
         module_id_(module_id) {
-    imu_.accept_only(module_id);
+    imu_.news_only_of(module_id);
   }
   std::string_view name() const override { return "estimation"; }
   Schedule schedule() override { return on(imu_, 50ms, Phase::estimate); }
@@ -56,16 +56,18 @@ class FakeControl final : public Service {
       : state_(ring.create_reader(topics::module_state)),
         rotors_(ring.create_writer(topics::rotor_command)),
         module_id_(module_id) {
-    state_.accept_only(module_id);
+    state_.news_only_of(module_id);
   }
   std::string_view name() const override { return "control"; }
   Schedule schedule() override { return on(state_, 50ms, Phase::control); }
   void step(TimePoint) noexcept override {
     ++steps;
-    if (const auto state = state_.take_newest()) {
+    while (const auto state = state_.take()) {
+      if (state->value.module_id != module_id_) continue;
       rotors_.write({.module_id = module_id_, .stamp_ns = state->value.stamp_ns});
     }
   }
+  TimePoint newest_state() { return state_.trigger().newest_stamp(); }
   int steps = 0;
 
  private:

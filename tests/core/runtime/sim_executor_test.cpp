@@ -144,6 +144,7 @@ TEST_F(SimExecutorTest, TriggeredServiceStepsOnItsOwnModulesSamplesAndOnTimeOut)
   state.write({.module_id = 2, .stamp_ns = to_ns(executor_->now())});
   executor_->tick();
   EXPECT_EQ(control.steps, 2) << "a peer's state is no trigger";
+  EXPECT_LT(control.newest_state(), t0) << "nor is it news";
   state.write({.module_id = 1, .stamp_ns = to_ns(executor_->now())});
   executor_->tick();
   EXPECT_EQ(control.steps, 3);

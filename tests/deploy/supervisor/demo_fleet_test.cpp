@@ -47,7 +47,7 @@ TEST_F(DemoFleetTest, RunsTwoProcessesAModuleWhenComposed) {
   ASSERT_TRUE(fleet.ok()) << fleet.error().message;
   EXPECT_EQ(processes(*fleet), 5u);
   const auto& arguments = fleet->plans[1].processes[1].child.arguments;
-  EXPECT_EQ((std::vector<std::string>(arguments.begin() + 3, arguments.end())),
+  EXPECT_EQ((std::vector<std::string>(arguments.begin() + 1, arguments.begin() + 6)),
             (std::vector<std::string>{"estimation", "control", "docking", "joints", "radio"}));
 }
 
@@ -77,7 +77,9 @@ TEST_F(DemoFleetTest, AlternatesVendorsWithinAndAcrossModules) {
     const auto& processes_of = fleet->plans[m].processes;
     for (std::size_t k = 1; k < processes_of.size(); ++k) {
       EXPECT_NE(processes_of[k].vendor, processes_of[k - 1].vendor);
-      if (m > 1) EXPECT_NE(processes_of[k].vendor, fleet->plans[m - 1].processes[k].vendor);
+      if (m > 1) {
+        EXPECT_NE(processes_of[k].vendor, fleet->plans[m - 1].processes[k].vendor);
+      }
     }
   }
 }

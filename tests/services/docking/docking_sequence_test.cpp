@@ -274,6 +274,15 @@ TEST_P(DockingSequenceTest, ReportsALatchThatDoesNotOpen) {
   EXPECT_EQ(sequence.outputs().failure, Failure::latch_stuck);
 }
 
+TEST_P(DockingSequenceTest, StandsStillWhileNoTimePasses) {
+  start(1.0);
+  run_for(0.5);
+  const Vector3 p = sequence.outputs().X_TF_reference.p;
+  const DockingOutputs& out = sequence.update(0, in);
+  EXPECT_EQ(out.X_TF_reference.p, p);
+  EXPECT_EQ(out.v_TF_reference, Vector3(Vector3::Zero()));
+}
+
 TEST_P(DockingSequenceTest, LeavesTheHeapAlone) {
   if (!eciton::testing::AllocationGuard::available()) GTEST_SKIP() << "the sanitizers bring a heap of their own";
   const std::array bodies{Vector3(-3, 0, 0), Vector3(3, 0, 0)};

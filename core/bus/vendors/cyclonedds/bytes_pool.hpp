@@ -25,8 +25,14 @@ class InheritingMutex {
   pthread_mutex_t mutex_;
 };
 
+<<<<<<< HEAD
 /// Blocks by size class (powers of two). `acquire` takes from what was reserved; only when that runs out (many events of
 /// many keys, samples still held for retransmission) it allocates, up to a bound for the whole process, and keeps it.
+=======
+/// Blocks by size class (powers of two). `acquire` takes from what was reserved; only when that runs out (many events
+/// of many keys, samples still held for retransmission) it allocates, up to a bound for the whole process, and keeps
+/// it.
+>>>>>>> main
 class BytesPool {
  public:
   /// Of all blocks together. The largest fleet of the tests stays below 3 MiB.
@@ -61,7 +67,9 @@ class BytesPool {
   static constexpr std::size_t kSmallestShift = 7;
   static constexpr std::size_t kClasses = 14;  // 128 bytes to 1 MiB
   static std::size_t class_of(std::size_t size);
-  static constexpr std::size_t capacity(std::size_t size_class) { return std::size_t{1} << (size_class + kSmallestShift); }
+  static constexpr std::size_t capacity(std::size_t size_class) {
+    return std::size_t{1} << (size_class + kSmallestShift);
+  }
   Block* allocate(std::size_t size_class);
   void put_back(Block* block);
 

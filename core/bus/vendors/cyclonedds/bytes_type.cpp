@@ -26,7 +26,10 @@ constexpr std::size_t padded(std::size_t size) { return (size + 3) & ~std::size_
 
 /// Room for `size` bytes, the padding to a multiple of 4 that goes on the wire set to zero.
 BytesSerdata* new_serdata(const ddsi_sertype* sertype, ddsi_serdata_kind kind, std::size_t size) {
-  void* memory = BytesPool::instance().acquire(sizeof(BytesSerdata) + padded(size));
+  // Of the class that was reserved: a short string or sequence must not ask for blocks of another.
+  const std::size_t block =
+      kind == SDK_KEY ? sizeof(BytesSerdata) + padded(size) : sample_block_size(type_of(sertype));
+  void* memory = BytesPool::instance().acquire(block);
   if (memory == nullptr) return nullptr;
   auto* serdata = new (memory) BytesSerdata{};
   ddsi_serdata_init(serdata, sertype, kind);
@@ -45,8 +48,8 @@ void set_hash(BytesSerdata& serdata) {
 ddsi_serdata* finished(BytesSerdata* serdata) {
   const eciton_type& type = type_of(serdata->type);
   const bool key_only = serdata->kind == SDK_KEY;
-  const bool good = key_only ? serdata->size >= kHeaderSize
-                             : vendors::well_formed(type, serdata->cdr(), serdata->size);
+  const bool good =
+      key_only ? serdata->size >= kHeaderSize : vendors::well_formed(type, serdata->cdr(), serdata->size);
   if (!good || !vendors::key_hash_of(type, serdata->cdr(), serdata->size, key_only, serdata->key_hash)) {
     BytesPool::release(serdata);
     return nullptr;
@@ -175,9 +178,9 @@ std::uint32_t shared_memory_size(const ddsi_serdata* serdata) { return as_bytes(
 ddsi_serdata* from_shared_memory(const ddsi_sertype*, ddsi_serdata_kind, void*, void*) { return nullptr; }
 
 const ddsi_serdata_ops kSerdataOps = {
-    equal_keys, size_of,    from_fragments,    from_buffers, from_key_hash, from_sample,  copy_out,           lend,
-    take_back,  to_sample,  to_untyped,        untyped_to_sample, free_serdata, print, get_key_hash, shared_memory_size,
-    from_shared_memory,
+    equal_keys,   size_of, from_fragments, from_buffers,       from_key_hash,      from_sample,
+    copy_out,     lend,    take_back,      to_sample,          to_untyped,         untyped_to_sample,
+    free_serdata, print,   get_key_hash,   shared_memory_size, from_shared_memory,
 };
 
 void free_sertype(ddsi_sertype* sertype) {
@@ -210,7 +213,9 @@ bool equal_types(const ddsi_sertype* a, const ddsi_sertype* b) {
 
 std::uint32_t hash_type(const ddsi_sertype* sertype) { return type_of(sertype).size_max; }
 
-std::size_t serialized_size(const ddsi_sertype*, const void* sample) { return static_cast<const Bytes*>(sample)->size; }
+std::size_t serialized_size(const ddsi_sertype*, const void* sample) {
+  return static_cast<const Bytes*>(sample)->size;
+}
 
 bool serialize_into(const ddsi_sertype*, const void* sample, void* to, std::size_t size) {
   const auto* bytes = static_cast<const Bytes*>(sample);

@@ -57,8 +57,9 @@ std::string configuration(const Settings& settings) {
       << "<GenerateKeyhash>true</GenerateKeyhash>"
       // A reliable writer being deleted waits this long for acknowledgements (default 1 s).
       << "<WriterLingerDuration>20ms</WriterLingerDuration>"
-      // The defaults (100 ms doubling to 8 s, 100 ms, 3 s) leave gaps of seconds after a loss; Fast DDS is set to the same.
-      << "<HeartbeatInterval min=\"5ms\" minsched=\"20ms\" max=\"200ms\">50ms</HeartbeatInterval>"
+      // The defaults (100 ms doubling to 8 s, 100 ms, 3 s) leave gaps of seconds after a loss; Fast DDS is set to the
+      // same.
+      << "<HeartbeatInterval min=\"5ms\" minsched=\"5ms\" max=\"200ms\">10ms</HeartbeatInterval>"
       << "<NackDelay>5ms</NackDelay><AutoReschedNackDelay>50ms</AutoReschedNackDelay>"
       // KEEP_LAST bounds what a writer holds; waiting at a watermark below that would block a step.
       << "<Watermarks><WhcHigh>16MiB</WhcHigh><WhcHighInit>16MiB</WhcHighInit><WhcAdaptive>false</WhcAdaptive>"

@@ -18,8 +18,13 @@ namespace {
 
 // Samples on their way beyond those a history holds: being sent, received, taken or retransmitted.
 constexpr std::size_t kSamplesInFlight = 24;
+<<<<<<< HEAD
 // Reserved for one endpoint at most. Only events (64 of each key) can need more, and they are not for control: the pool
 // then grows as they come.
+=======
+// Reserved for one endpoint at most. Only events (64 of each key) can need more, and they are not for control: the
+// pool then grows as they come.
+>>>>>>> main
 constexpr std::size_t kSamplesReservedMax = 128;
 // A take hands out this many samples at a time.
 constexpr std::uint32_t kTakenAtOnce = 16;
@@ -51,8 +56,8 @@ Result<dds_entity_t> create_topic(const eciton_participant& participant, const c
       dds_create_topic_sertype(participant.participant.get(), name, &sertype, nullptr, nullptr, nullptr);
   if (topic > 0) return topic;
   ddsi_sertype_unref(sertype);
-  return Error{participant.label() + ": Cyclone DDS cannot create topic \"" + name + "\" of type " + type.name + ": " +
-               dds_strretcode(-topic)};
+  return Error{participant.label() + ": Cyclone DDS cannot create topic \"" + name + "\" of type " + type.name +
+               ": " + dds_strretcode(-topic)};
 }
 
 Error cannot_create(const eciton_participant& participant, const char* what, const char* topic, dds_entity_t code) {

@@ -1,9 +1,9 @@
 // Declares the three functions of Fast DDS that it takes, weakly, and calls them where they exist.
 #include "core/bus/vendors/fastdds/fast_discovery.hpp"
 
-#include <fastdds/rtps/common/EntityId_t.hpp>
 #include <fastdds/rtps/common/Guid.h>
 #include <fastdds/rtps/writer/StatefulWriter.h>
+#include <fastdds/rtps/common/EntityId_t.hpp>
 
 namespace eprosima::fastrtps::rtps {
 

@@ -1,14 +1,13 @@
 // Participant of Fast DDS: UDP on one interface, no shared memory, discovery by multicast or by peers.
 #include "core/bus/vendors/fastdds/participant.hpp"
 
-#include <cstdlib>
-#include <cstring>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <cstdlib>
+#include <cstring>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <memory>
-#include <mutex>
 
 #include "core/bus/vendors/fastdds/bytes_type.hpp"
 #include "core/bus/vendors/fastdds/fast_discovery.hpp"
@@ -49,7 +48,7 @@ void set_discovery(rtps::BuiltinAttributes& builtin, const std::string& address,
 }
 
 fast::DomainParticipantQos participant_qos(const eciton_participant_config& config, const std::string& address,
-                                          const std::vector<std::string>& peers) {
+                                           const std::vector<std::string>& peers) {
   fast::DomainParticipantQos qos;
   qos.name(config.name);
   qos.transport().use_builtin_transports = false;  // these would bring shared memory and every interface
@@ -67,11 +66,9 @@ fast::DomainParticipantQos participant_qos(const eciton_participant_config& conf
 // Profiles from files apply to defaults only, and no default is used here. The one thing in the environment that
 // would still win is the discovery server of ROS 2, which replaces the discovery asked for.
 void ignore_environment() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    unsetenv("ROS_DISCOVERY_SERVER");
-    unsetenv("FASTDDS_ENVIRONMENT_FILE");
-  });
+  for (const char* variable : {"ROS_DISCOVERY_SERVER", "FASTDDS_ENVIRONMENT_FILE"}) {
+    if (std::getenv(variable) != nullptr) unsetenv(variable);
+  }
 }
 
 }  // namespace

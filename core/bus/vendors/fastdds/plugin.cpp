@@ -47,9 +47,20 @@ std::uint32_t reader_take(eciton_reader* reader, std::uint32_t count_max, eciton
 std::uint32_t reader_matched(eciton_reader* reader) { return reader->matched(); }
 
 constexpr eciton_plugin kPlugin = {
-    ECITON_PLUGIN_ABI_VERSION, sizeof(eciton_plugin), "fastdds",     FASTRTPS_VERSION_STR, participant_create,
-    participant_destroy,       writer_create,         writer_destroy, writer_write,         writer_matched,
-    reader_create,             reader_destroy,        reader_take,    reader_matched,
+    ECITON_PLUGIN_ABI_VERSION,
+    sizeof(eciton_plugin),
+    "fastdds",
+    FASTRTPS_VERSION_STR,
+    participant_create,
+    participant_destroy,
+    writer_create,
+    writer_destroy,
+    writer_write,
+    writer_matched,
+    reader_create,
+    reader_destroy,
+    reader_take,
+    reader_matched,
 };
 
 }  // namespace

@@ -40,8 +40,9 @@ Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, co
   const Result<fast::Topic*> on = participant.topic(topic, type);
   if (!on) return on.error();
   std::unique_ptr<eciton_reader> created(new eciton_reader(participant, type, wake));
-  created->reader_ = participant.subscriber->create_datareader(
-      *on, reader_qos(qos), created.get(), fast::StatusMask::data_available() << fast::StatusMask::subscription_matched());
+  created->reader_ = participant.subscriber->create_datareader(*on, reader_qos(qos), created.get(),
+                                                               fast::StatusMask::data_available()
+                                                                   << fast::StatusMask::subscription_matched());
   if (created->reader_ == nullptr) {
     return Error{participant.label() + ": Fast DDS cannot create a reader of topic \"" + topic + "\""};
   }

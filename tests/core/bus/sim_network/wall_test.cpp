@@ -18,7 +18,7 @@ class WallNetwork : public ::testing::Test {
 
 template <class Condition>
 bool eventually(Condition&& condition) {
-  for (const auto end = Steady::now() + std::chrono::seconds(10); Steady::now() < end;) {
+  for (const auto end = Steady::now() + std::chrono::seconds(30); Steady::now() < end;) {
     if (condition()) return true;
     std::this_thread::sleep_for(std::chrono::microseconds(200));
   }
@@ -83,6 +83,7 @@ TEST_F(WallNetwork, CarriesSamplesBetweenThreadsWhileEndpointsComeAndGo) {
     while (!done) {
       TestReader passing(d, plain_type(), best_effort_deep);
       passing.take();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));  // or it keeps the lock from all others
     }
   });
   std::thread meddler([&] {

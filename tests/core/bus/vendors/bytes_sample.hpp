@@ -35,7 +35,8 @@ inline Cdr big_endian_sample(std::uint32_t key, std::uint32_t count) {
 
 inline std::uint32_t number_at(const Cdr& cdr, std::size_t at) {
   std::uint32_t value = 0;
-  for (std::size_t k = 0; k < 4; ++k) value |= static_cast<std::uint32_t>(cdr[at + (cdr[1] != 0 ? k : 3 - k)]) << 8 * k;
+  for (std::size_t k = 0; k < 4; ++k)
+    value |= static_cast<std::uint32_t>(cdr[at + (cdr[1] != 0 ? k : 3 - k)]) << 8 * k;
   return value;
 }
 inline std::uint32_t key_of(const Cdr& cdr) { return number_at(cdr, 4); }

@@ -21,7 +21,8 @@ namespace eciton::bus {
 
 inline const eciton_plugin& plugin(const std::string& vendor) {
   const char* directory = std::getenv("ECITON_PLUGIN_PATH");
-  const std::string path = (directory != nullptr ? std::string(directory) + "/" : "") + "lib" ECITON_PLUGIN_PREFIX + vendor + ".so";
+  const std::string path =
+      (directory != nullptr ? std::string(directory) + "/" : "") + "lib" ECITON_PLUGIN_PREFIX + vendor + ".so";
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     std::fprintf(stderr, "%s\n", dlerror());
@@ -33,7 +34,8 @@ inline const eciton_plugin& plugin(const std::string& vendor) {
 /// Another run on this machine most likely has another.
 inline std::uint32_t domain_of_this_run() { return 100 + static_cast<std::uint32_t>(getpid()) % 100; }
 
-inline bool wait_for(const std::function<bool()>& condition, std::chrono::milliseconds limit = std::chrono::seconds(10)) {
+inline bool wait_for(const std::function<bool()>& condition,
+                     std::chrono::milliseconds limit = std::chrono::seconds(10)) {
   const auto end = std::chrono::steady_clock::now() + limit;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;

@@ -145,8 +145,8 @@ TEST_P(PluginTest, RefusesToWriteWhatIsNoSample) {
   TestWriter writer(writing_, "bad", kKeyed, kCommand);
   EXPECT_FALSE(writer.write({}));
   EXPECT_FALSE(writer.write({0, 1}));
-  EXPECT_FALSE(writer.write({0, 1, 0, 0, 1, 0}));                      // no whole key
-  EXPECT_FALSE(writer.write({0, 7, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}));    // XCDR2
+  EXPECT_FALSE(writer.write({0, 1, 0, 0, 1, 0}));                        // no whole key
+  EXPECT_FALSE(writer.write({0, 7, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}));      // XCDR2
   EXPECT_FALSE(writer.write(sample(1, 1, std::string(kSizeMax, 'x'))));  // too long
 }
 
@@ -160,7 +160,7 @@ TEST_P(PluginTest, DropsMalformedSamplesOfAPeer) {
   TestReader reader(third, "malformed", kKeyed, qos);
   TestWriter good(reading_, "malformed", kKeyed, qos);
   ASSERT_TRUE(wait_for([&] { return writer.matched() > 0 && good.matched() > 0 && reader.matched() == 2; }));
-  for (int k = 0; k < 400; ++k) {  // more than any history holds
+  for (int k = 0; k < 400; ++k) {             // more than any history holds
     ASSERT_TRUE(writer.write({0, 1, 0, 0}));  // no key
     ASSERT_TRUE(good.write(sample(1, static_cast<std::uint32_t>(k))));
     if (k == 200) {
