@@ -25,14 +25,9 @@ class InheritingMutex {
   pthread_mutex_t mutex_;
 };
 
-<<<<<<< HEAD
-/// Blocks by size class (powers of two). `acquire` takes from what was reserved; only when that runs out (many events of
-/// many keys, samples still held for retransmission) it allocates, up to a bound for the whole process, and keeps it.
-=======
 /// Blocks by size class (powers of two). `acquire` takes from what was reserved; only when that runs out (many events
 /// of many keys, samples still held for retransmission) it allocates, up to a bound for the whole process, and keeps
 /// it.
->>>>>>> main
 class BytesPool {
  public:
   /// Of all blocks together. The largest fleet of the tests stays below 3 MiB.

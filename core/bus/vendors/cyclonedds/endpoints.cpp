@@ -18,13 +18,8 @@ namespace {
 
 // Samples on their way beyond those a history holds: being sent, received, taken or retransmitted.
 constexpr std::size_t kSamplesInFlight = 24;
-<<<<<<< HEAD
-// Reserved for one endpoint at most. Only events (64 of each key) can need more, and they are not for control: the pool
-// then grows as they come.
-=======
 // Reserved for one endpoint at most. Only events (64 of each key) can need more, and they are not for control: the
 // pool then grows as they come.
->>>>>>> main
 constexpr std::size_t kSamplesReservedMax = 128;
 // A take hands out this many samples at a time.
 constexpr std::uint32_t kTakenAtOnce = 16;
