@@ -1,7 +1,7 @@
 # The front door: `make demo` and `make test` on a machine that has nothing but git, make and apt.
 # Thin on purpose: the logic is in CMakePresets.json, deploy/install-deps and the eciton command.
 
-# The DDS vendor of the demo (fastdds, cyclonedds), and more options for it: make demo DDS=fastdds ARGS="--set modules=3"
+# The DDS vendor of the demo (fastdds, cyclonedds, mixed), and more options for it: make demo DDS=fastdds ARGS="--modules 2"
 DDS ?=
 ARGS ?=
 JOBS ?= $(shell nproc)
@@ -10,7 +10,7 @@ JOBS ?= $(shell nproc)
 
 demo: install-deps
 	cmake --preset release
-	cmake --build --preset release
+	cmake --build --preset release --target programs
 	build/release/bin/eciton demo $(if $(DDS),--dds $(DDS)) $(ARGS)
 
 test: install-deps
@@ -20,7 +20,7 @@ test: install-deps
 
 build: install-deps
 	cmake --preset release
-	cmake --build --preset release
+	cmake --build --preset release --target programs
 
 # More seeds and longer flights: tests read ECITON_NIGHTLY, and those of configuration `nightly` run only here.
 nightly: install-deps

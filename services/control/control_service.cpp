@@ -42,7 +42,9 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
       morph_goal_(ring.create_reader(topics::morph_goal)),
       rotor_command_(ring.create_writer(topics::rotor_command)),
       goal_status_(ring.create_writer(topics::goal_status)),
-      event_(ring.create_writer(topics::event)) {}
+      event_(ring.create_writer(topics::event)) {
+  module_state_.news_only_of(config.module_id);  // peers' states come on this topic too and trigger nothing
+}
 
 void ControlService::step(TimePoint now) noexcept {
   if (first_step_) epoch_ = now;
