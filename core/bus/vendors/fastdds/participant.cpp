@@ -8,7 +8,6 @@
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <memory>
-#include <mutex>
 
 #include "core/bus/vendors/fastdds/bytes_type.hpp"
 #include "core/bus/vendors/fastdds/fast_discovery.hpp"
@@ -67,11 +66,9 @@ fast::DomainParticipantQos participant_qos(const eciton_participant_config& conf
 // Profiles from files apply to defaults only, and no default is used here. The one thing in the environment that
 // would still win is the discovery server of ROS 2, which replaces the discovery asked for.
 void ignore_environment() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    unsetenv("ROS_DISCOVERY_SERVER");
-    unsetenv("FASTDDS_ENVIRONMENT_FILE");
-  });
+  for (const char* variable : {"ROS_DISCOVERY_SERVER", "FASTDDS_ENVIRONMENT_FILE"}) {
+    if (std::getenv(variable) != nullptr) unsetenv(variable);
+  }
 }
 
 }  // namespace

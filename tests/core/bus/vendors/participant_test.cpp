@@ -81,6 +81,24 @@ TEST_P(ParticipantTest, DiscoversUnicastPeersWithoutMulticast) {
   }
 }
 
+TEST_P(ParticipantTest, IsNotLedAstrayByTheVendorsEnvironment) {
+  setenv("CYCLONEDDS_URI", "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name='wlan9'/>", 1);
+  setenv("FASTRTPS_DEFAULT_PROFILES_FILE", "/nowhere.xml", 1);
+  setenv("ROS_DISCOVERY_SERVER", "127.0.0.1:11811", 1);
+  {
+    TestParticipant one(GetParam());
+    TestParticipant two(GetParam());
+    ASSERT_NE(one.handle(), nullptr) << one.error();
+    TestWriter writer(one, "environment", kKeyed, kState);
+    TestReader reader(two, "environment", kKeyed, kState);
+    ASSERT_TRUE(writer.write(sample(1, 1)));
+    EXPECT_TRUE(reader.wait_until_taken(1));
+  }
+  unsetenv("CYCLONEDDS_URI");
+  unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");
+  unsetenv("ROS_DISCOVERY_SERVER");
+}
+
 TEST_P(ParticipantTest, CarriesTwoDomainsInOneProcessApart) {
   TestParticipant module(GetParam());
   TestParticipant swarm(GetParam(), domain_of_this_run() + 1);
