@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "core/base/wall_clock.hpp"
 #include "core/runtime/stop_signal.hpp"
@@ -14,6 +15,7 @@
 #include "deploy/module_config.hpp"
 #include "deploy/supervisor/launch_loop.hpp"
 #include "deploy/supervisor/module_plan.hpp"
+#include "deploy/world_file.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -27,14 +29,19 @@ struct UpOptions {
 
 constexpr Duration start_phase = std::chrono::seconds(2);  // in which a process says that its input is bad
 constexpr Duration pace = std::chrono::milliseconds(200);
+constexpr int bad_input_status = 2;
 
 std::vector<LaunchPlan> plan_all(const UpOptions& options) {
   namespace fs = std::filesystem;
   const fs::path programs = program_directory();
   std::vector<LaunchPlan> plans;
   if (!options.world_file.empty()) {
+    ConfigTree tree;
+    ok_or_throw(tree.add_file(options.world_file));
+    WorldFile config;
+    ok_or_throw(read_config(tree, config));
     LaunchPlan world{.name = "world", .network_interface = {}, .claims = {}, .processes = {}};
-    world.processes.push_back({.name = "world", .vendor = {}, .child = {}});
+    world.processes.push_back({.name = "world", .vendor = config.dds, .child = {}});
     world.processes[0].child = {
         .name = "world", .arguments = {programs / "eciton-world", "--config", fs::absolute(options.world_file)}};
     plans.push_back(std::move(world));
@@ -72,19 +79,27 @@ void print_started(const Launches& launches) {
   std::fflush(stdout);
 }
 
+/// What a process calls bad input when it starts ends the whole of its module: nothing stays half-started. When
+/// it does so only at a restart, the others fly on.
 int run_until_stopped(Launches& launches, const runtime::StopFlag& stop) {
+  int status = 0;
   while (!stop.requested() && !launches.empty()) {
-    watch(launches, {stop.file_descriptor()}, pace, [](Launch& launch, const ChildReport& report) {
+    std::set<const Launch*> half_started;
+    watch(launches, {stop.file_descriptor()}, pace, [&](Launch& launch, const ChildReport& report) {
       const bool refused = report.state == ChildState::refused;
-      std::fprintf(
-          stderr, "%s; %s\n", describe(launch, report).c_str(),
-          refused ? "it stays down until the config is mended and the module is up anew" : "it is started again");
+      if (refused && report.restarts == 0) half_started.insert(&launch);
+      std::fprintf(stderr, "%s; %s\n", describe(launch, report).c_str(),
+                   !refused               ? "it is started again"
+                   : report.restarts == 0 ? "all of it ends"
+                                          : "it stays down until the config is mended and all of it is up anew");
     });
-    std::erase_if(launches, [](const auto& launch) { return launch->stop_requested(); });
+    if (!half_started.empty()) status = bad_input_status;
+    std::erase_if(launches, [&](const auto& launch) {
+      return launch->stop_requested() || half_started.contains(launch.get());
+    });
   }
-  // The reverse order: a world outlives its modules.
   stop_all(launches);
-  return 0;
+  return status;
 }
 
 int bring_up(const UpOptions& options) {
