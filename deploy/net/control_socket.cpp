@@ -16,7 +16,7 @@ namespace eciton::net {
 namespace {
 
 constexpr std::size_t request_bytes_max = 4096;
-constexpr int patience_s = 5;
+constexpr int patience_s = 3;
 
 Error failed(const std::filesystem::path& path, const char* what) {
   return Error{"control socket " + path.string() + " " + what + ": " + std::strerror(errno)};

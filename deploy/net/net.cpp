@@ -147,10 +147,11 @@ Status take_down(const std::string& name) {
   const fs::path directory = nets_root / name;
   if (deploy::is_held(directory)) {
     const pid_t relay = holder_of(name);
+    // One that does not even answer hangs, or is stopped.
     const auto answer = ask(directory / socket_name, down_request);
-    const Duration end = monotonic_now() + down_patience;
+    const Duration end = monotonic_now() + (answer ? down_patience : Duration::zero());
     while (deploy::is_held(directory) && monotonic_now() < end) std::this_thread::sleep_for(poll_period);
-    if (deploy::is_held(directory)) {  // it hangs, or is stopped
+    if (deploy::is_held(directory)) {
       if (relay <= 1 || ::kill(relay, SIGKILL) != 0)
         return Error{"net " + name + " does not end, and its relay (process " + std::to_string(relay) +
                      ") cannot be killed"};
@@ -206,6 +207,8 @@ Status wait_until_up(const std::string& name, Duration patience) {
 Result<OwnedNet> OwnedNet::start(const NetSpec& spec, const fs::path& programs) {
   if (const Status named = check_name(spec.name); !named) return named.error();
   if (const Status rights = check_rights(); !rights) return rights.error();
+  if (const pid_t holder = holder_of(spec.name); holder != 0)
+    return Error{"net " + spec.name + " is up already, carried by process " + std::to_string(holder)};
   std::string log = (fs::temp_directory_path() / "eciton-net-XXXXXX").string();
   const int fd = ::mkstemp(log.data());
   if (fd < 0) return Error{"no log file can be made in " + fs::temp_directory_path().string()};
