@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/base/log.hpp"
 #include "deploy/command/detach.hpp"
@@ -50,6 +51,25 @@ bool is_up_already(const net::NetSpec& spec) {
   return false;
 }
 
+/// Ends with whoever started it, who may be killed: and then tidies up. The kernel tells of a parent's death once per
+/// thread of it, so the signal must not be one whose second coming ends the process.
+class StopWithParent {
+ public:
+  explicit StopWithParent(runtime::StopFlag& stop) {
+    flag = &stop;
+    struct sigaction action {};
+    action.sa_handler = [](int) { flag->request(); };
+    ::sigaction(SIGHUP, &action, nullptr);
+    ::prctl(PR_SET_PDEATHSIG, SIGHUP);
+  }
+  ~StopWithParent() { ::signal(SIGHUP, SIG_IGN); }
+  StopWithParent(const StopWithParent&) = delete;
+  StopWithParent& operator=(const StopWithParent&) = delete;
+
+ private:
+  static inline runtime::StopFlag* flag = nullptr;
+};
+
 int bring_up(const NetOptions& options) {
   const net::NetSpec& spec = options.spec;
   ok_or_throw(net::check_name(spec.name));
@@ -61,10 +81,10 @@ int bring_up(const NetOptions& options) {
   }
   Detached detached = options.foreground ? Detached() : Detached::fork();
   if (detached.is_parent()) return detached.wait_for_start();
-  // It ends with whoever started it, who may be killed: and then tidies up.
-  if (options.foreground) ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   runtime::StopFlag stop;
   const runtime::StopOnSignals on_signals(stop);
+  std::optional<StopWithParent> with_parent;
+  if (options.foreground) with_parent.emplace(stop);
   try {
     start_log("net " + spec.name, "info");
     net::run_net(spec, stop, [&] {

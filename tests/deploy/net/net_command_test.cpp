@@ -2,12 +2,17 @@
 // wrong is said.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
 
 #include "deploy/net/net.hpp"
+#include "deploy/net/requests.hpp"
 #include "tests/deploy/command/process.hpp"
 #include "tests/deploy/supervisor/scratch.hpp"
 
@@ -153,6 +158,56 @@ TEST_F(NetCommandTest, InTheForegroundItEndsWithItsParentAndTidiesUp) {
   ASSERT_EQ(::kill(shell->pid(), SIGKILL), 0);  // the shell alone
   EXPECT_TRUE(eventually([&] { return net::known_nets().empty() || !net::find_net(name); }));
   EXPECT_TRUE(eventually([&] { return left().empty(); }));
+}
+
+TEST_F(NetCommandTest, AKilledOwnerLeavesNothing) {
+  const pid_t owner = ::fork();
+  if (owner == 0) {
+    // As a measuring program has them: the kernel tells of the death once per thread.
+    std::vector<std::jthread> threads;
+    for (int k = 0; k < 8; ++k) threads.emplace_back([] { ::pause(); });
+    const auto net = net::OwnedNet::start({.name = name, .modules = 1}, ECITON_PROGRAMS);
+    ::pause();
+    ::_exit(1);
+  }
+  ASSERT_TRUE(net::wait_until_up(name, std::chrono::seconds(20)).ok());
+  ASSERT_EQ(::kill(owner, SIGKILL), 0);
+  ::waitpid(owner, nullptr, 0);
+  EXPECT_TRUE(eventually([&] { return left().empty(); }));
+}
+
+/// Not the flight, which takes its time, but what is new about it.
+TEST_F(NetCommandTest, TheDemoPutsEveryModuleIntoItsHostAndItsSwarmOnTheRadio) {
+  const deploy::Scratch scratch;
+  auto demo = deploy::ChildProcess::start(
+      {.arguments = {std::string(ECITON_PROGRAMS) + "/eciton", "demo", "--hosts", "--modules", "2", "--net", name},
+       .environment = {{"ECITON_RUNTIME_DIR", scratch.file("run")}},
+       .log_file = scratch.file("log")});
+  ASSERT_TRUE(demo.ok()) << demo.error().message;
+  const auto count = [&](std::uint32_t host) { return net::processes_in({net::host_namespace(name, host)}).size(); };
+  const auto counted = [&](const char* from, const char* to, const char* counter) -> std::uint64_t {
+    const auto answer = net::ask_net(name, net::show_request);
+    if (!answer) return 0;
+    const auto json = nlohmann::json::parse(*answer);
+    for (const auto& link : json["links"]) {
+      if (link["from"] == from && link["to"] == to) return link[counter];
+    }
+    return 0;
+  };
+  EXPECT_TRUE(eventually([&] { return count(1) == 2 && count(2) == 2; }));
+  for (const auto& [from, to] : {std::pair("m1", "m2"), {"m2", "m1"}, {"operator", "m1"}, {"m2", "operator"}}) {
+    EXPECT_TRUE(eventually([&] { return counted(from, to, "delivered") > 20; })) << from << " to " << to;
+  }
+  EXPECT_EQ(counted("m1", "m2", "lost"), 0u);
+  EXPECT_EQ(eciton_command({"net", "set", "--name", name, "loss=50%"}).status, 0);
+  EXPECT_TRUE(eventually([&] { return counted("m1", "m2", "lost") > 5; }));
+  demo->signal(SIGINT);
+  std::optional<deploy::ProcessEnd> end;
+  EXPECT_TRUE(eventually([&] { return (end = demo->take_end()).has_value(); }))
+      << deploy::text_of(scratch.file("log"));
+  EXPECT_EQ(end->exit_status, 130) << deploy::text_of(scratch.file("log"));
+  EXPECT_EQ(left(), std::vector<std::string>{});
+  EXPECT_FALSE(fs::exists(scratch.file("run")));
 }
 
 TEST_F(NetCommandTest, ForeignNamespacesAreLeftAlone) {
