@@ -25,7 +25,8 @@ const fs::path nets_root = "/run/eciton-net";
 constexpr const char* spec_name = "spec";
 constexpr const char* socket_name = "control";
 constexpr int relay_priority = 10;  // a radio does not wait for the computers it joins
-constexpr Duration down_patience = std::chrono::seconds(6), poll_period = std::chrono::milliseconds(10);
+constexpr Duration down_patience = std::chrono::seconds(6), start_patience = std::chrono::seconds(20),
+                   poll_period = std::chrono::milliseconds(10);
 
 std::vector<fs::path> namespaces_of(const NetSpec& spec) {
   std::vector<fs::path> files;
@@ -219,7 +220,7 @@ Result<OwnedNet> OwnedNet::start(const NetSpec& spec, const fs::path& programs) 
     return relay.error();
   }
   OwnedNet net(spec, std::make_unique<deploy::ChildProcess>(std::move(relay).value()));
-  const Duration end = monotonic_now() + down_patience;
+  const Duration end = monotonic_now() + start_patience;
   Status status = Error{"net " + spec.name + " does not start"};
   while (monotonic_now() < end && !status) {
     if (net.relay_->take_end()) {
