@@ -66,6 +66,7 @@ void Launch::write_state() {
                       .module_id = plan_.module_id,
                       .domain = plan_.domain,
                       .network_interface = plan_.network_interface,
+                      .network_namespace = plan_.network_namespace,
                       .processes = {}};
   const std::vector<ChildReport> reports = supervisor_.reports();
   for (std::size_t k = 0; k < reports.size(); ++k) {
