@@ -57,6 +57,7 @@ std::string number_text(double value);
 /// "1.02 [0.99, 1.06]"
 std::string interval_text(const Interval& interval);
 
+std::string to_text(const Table& table);
 /// Tables and notes, for people.
 std::string to_text(const Result& result);
 /// One self-contained page.
