@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/statistics/bootstrap.hpp"
@@ -35,6 +37,17 @@ struct Bars {
   std::optional<double> limit = {};  // drawn as a line
 };
 
+struct Curve {
+  std::string name;
+  std::vector<std::pair<double, double>> points = {};
+};
+
+/// How something grows: both axes logarithmic where the values span more than a factor of 20.
+struct Curves {
+  std::string title, x_name, unit;
+  std::vector<Curve> curves = {};
+};
+
 struct Result {
   std::string title;    // "Latency"
   std::string command;  // "bench latency"
@@ -45,6 +58,7 @@ struct Result {
   std::vector<Samples> samples;
   std::vector<Table> tables;
   std::vector<Bars> bars;
+  std::vector<Curves> curves;
   std::vector<std::string> notes;  // clock-error bounds, missing peers, how late the sender was
   bool partial = false;            // interrupted, or something to be measured was not there
 };
@@ -63,7 +77,7 @@ std::string to_text(const Result& result);
 /// One self-contained page.
 std::string to_html(const Result& result);
 /// name,unit,at_s,value: every raw sample in a line of its own.
-std::string to_csv(const Result& result);
+void write_csv(std::ostream& file, const Result& result);
 
 struct ReportFiles {
   std::string json, csv, html;  // empty: not asked for
