@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <span>
 
 #include "benchmarks/report/axis.hpp"
@@ -150,6 +151,25 @@ double greatest_of(const Bars& bars) {
   return greatest;
 }
 
+/// Colours tell names apart where groups share them, else the groups.
+class BarColours {
+ public:
+  explicit BarColours(const std::vector<Bar>& bars) {
+    std::set<std::string> names;
+    for (const Bar& bar : bars) by_name_ = by_name_ || !names.insert(bar.name).second;
+  }
+  std::string of(const Bar& bar) {
+    const std::string& key = by_name_ ? bar.name : bar.group;
+    const auto index = static_cast<std::size_t>(std::find(known_.begin(), known_.end(), key) - known_.begin());
+    if (index == known_.size()) known_.push_back(key);
+    return colour(index);
+  }
+
+ private:
+  bool by_name_ = false;
+  std::vector<std::string> known_;
+};
+
 }  // namespace
 
 std::string escaped(const std::string& text) {
@@ -258,7 +278,7 @@ std::string curves_chart(const Curves& curves) {
 
 std::string bars_chart(const Bars& bars) {
   constexpr double names = 260, figures = 170, row = 24, heading = 26;
-  std::vector<std::string> known;
+  BarColours colours(bars.bars);
   double height = 34;
   for (std::size_t i = 0; i < bars.bars.size(); ++i) {
     const bool begins = i == 0 || bars.bars[i].group != bars.bars[i - 1].group;
@@ -279,13 +299,11 @@ std::string bars_chart(const Bars& bars) {
       y += heading;
       svg.words(4, y - 6, "start", escaped(bar.group), "name");
     }
-    std::size_t index = static_cast<std::size_t>(std::find(known.begin(), known.end(), bar.name) - known.begin());
-    if (index == known.size()) known.push_back(bar.name);
     svg.words(names - 10, y + 16, "end", escaped(bar.name), "label");
     svg.words(width, y + 16, "end", interval_text(bar.value), "label figure");
     if (std::isfinite(bar.value.value)) {
       const std::string tip = escaped(bar.group + " " + bar.name) + ": " + interval_text(bar.value);
-      svg.bar(names, y + 4, x(bar.value.value) - names, row - 8, "fill " + colour(index), tip);
+      svg.bar(names, y + 4, x(bar.value.value) - names, row - 8, "fill " + colours.of(bar), tip);
     }
     if (finite(bar.value)) {
       const double from = x(bar.value.low), to = x(bar.value.high), middle = y + row / 2;

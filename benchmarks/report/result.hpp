@@ -27,7 +27,7 @@ struct Table {
 /// Side by side within its group.
 struct Bar {
   std::string group;  // "256 B"
-  std::string name;   // "Cyclone DDS, ours": one colour on the whole chart
+  std::string name;   // "Cyclone DDS, ours": one colour on the whole chart; names of one group only: its colour
   Interval value;     // whiskers where low and high are finite
 };
 
