@@ -9,22 +9,22 @@ namespace eciton::bus {
 class RawReader::Core final : public ReaderCore {
  public:
   Core(Participant& participant, const TopicInfo& topic)
-      : ReaderCore(participant, topic), keep_last_one_(topic.qos != QosClass::event), slots_(capacity(topic)) {
+      : ReaderCore(participant, topic),
+        keep_last_one_(topic.qos != QosClass::event && topic.depth <= 1),
+        slots_(capacity(topic)) {
     for (Slot& slot : slots_) slot.bytes.resize(topic.type.size_max);
   }
 
   void accept(std::span<const std::uint8_t> cdr) noexcept override {
     ++statistics_.received;
     KeyHash key{};
-    const auto size = static_cast<std::uint32_t>(cdr.size());
-    if (size > topic_.type.size_max || size < encapsulation_size ||
-        (topic_.type.key_size > 0 && topic_.type.key_hash(cdr.data(), size, 0, key.data()) == 0)) {
+    if (!may_be_sample(topic_.type, cdr, &key)) {
       ++statistics_.dropped_malformed;
       return;
     }
     Slot& slot = slot_for(key);
     std::copy(cdr.begin(), cdr.end(), slot.bytes.begin());
-    slot.size = size;
+    slot.size = static_cast<std::uint32_t>(cdr.size());
     slot.key = key;
   }
 
@@ -48,7 +48,7 @@ class RawReader::Core final : public ReaderCore {
 
   static std::size_t capacity(const TopicInfo& topic) {
     const eciton_qos qos = plugin_qos(topic.qos, topic.type.key_size > 0);
-    return std::max(qos.depth, qos.instances_max);
+    return std::max({qos.depth, topic.depth, qos.instances_max});
   }
 
   Slot& slot_for(const KeyHash& key) {

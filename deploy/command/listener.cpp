@@ -19,11 +19,14 @@ std::vector<TopicEntry const*> distinct(std::vector<const TopicEntry*> topics) {
 
 }  // namespace
 
-Listener::Listener(const RingOptions& ring, const std::string& tool, const std::vector<const TopicEntry*>& topics)
+Listener::Listener(const RingOptions& ring, const std::string& tool, const std::vector<const TopicEntry*>& topics,
+                   std::uint32_t depth)
     : participant_(participant_config(ring, tool)) {
   ring_ = describe(ring, participant_.config());
   for (const TopicEntry* topic : distinct(topics)) {
-    ears_.push_back({topic, participant_.create_raw_reader(topic->info)});
+    bus::TopicInfo info = topic->info;
+    info.depth = depth;
+    ears_.push_back({topic, participant_.create_raw_reader(info)});
   }
 }
 

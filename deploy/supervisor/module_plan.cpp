@@ -42,6 +42,8 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
     const bool composed = config.layout == "composed";
     plan.processes.push_back(plan_process(name, config, programs / "eciton-service", config_file, assignments,
                                           composed ? all : std::vector<std::string>{name}));
+    // In lockstep nothing is restarted: the world waits for the dead.
+    plan.processes.back().has_checkpoints = config.clock == "wall";
   }
   return plan;
 }
@@ -49,7 +51,9 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
 Status check_vendors(const std::vector<LaunchPlan>& plans) {
   std::set<std::string> vendors;
   for (const LaunchPlan& plan : plans) {
-    for (const PlannedProcess& process : plan.processes) vendors.insert(process.vendor);
+    for (const PlannedProcess& process : plan.processes) {
+      if (!process.vendor.empty()) vendors.insert(process.vendor);
+    }
   }
   for (const std::string& vendor : vendors) {
     if (const auto plugin = bus::load_plugin(vendor); !plugin) return plugin.error();

@@ -36,7 +36,8 @@ Status Supervisor::start(const ChildSpec& spec) {
 Status Supervisor::launch(Child& child) {
   Result<ChildProcess> process = ChildProcess::start({.arguments = child.spec.arguments,
                                                       .environment = child.spec.environment,
-                                                      .log_file = log_file(child.spec.name)});
+                                                      .log_file = log_file(child.spec.name),
+                                                      .network_namespace = child.spec.network_namespace});
   if (!process) return process.error();
   child.process.emplace(std::move(process).value());
   child.report.pid = child.process->pid();
@@ -55,10 +56,11 @@ void Supervisor::note_end(Child& child, const ProcessEnd& end) {
     child.report.state = ChildState::refused;
     return;
   }
-  if (now - child.started >= config_.steady) child.backoff = config_.backoff_min;
   child.report.state = ChildState::waiting;
-  child.restart_at = now + child.backoff;
-  child.backoff = std::min(2 * child.backoff, config_.backoff_max);
+  // What ran long enough is needed back at once; what keeps ending waits longer each time.
+  const bool steady = now - child.started >= config_.steady;
+  child.restart_at = steady ? now : now + child.backoff;
+  child.backoff = steady ? config_.backoff_min : std::min(2 * child.backoff, config_.backoff_max);
 }
 
 void Supervisor::check(const std::function<void(const ChildReport&)>& on_end) {
