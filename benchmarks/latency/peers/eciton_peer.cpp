@@ -23,8 +23,8 @@ template <class Payload>
 class LaneOf final : public Lane {
  public:
   LaneOf(bus::Participant& participant, const PeerOptions& options)
-      : writer_(participant.create_writer(topic(options, options.role == Role::ping))),
-        reader_(participant.create_reader(topic(options, options.role == Role::echo))) {
+      : writer_(participant.create_writer(topic(topic_name(options, options.role, bytes), options))),
+        reader_(participant.create_reader(topic(topic_name(options, other(options.role), bytes), options))) {
     sample_.module_id = 1;
     fill(sample_.values);
   }
@@ -42,11 +42,10 @@ class LaneOf final : public Lane {
   }
 
  private:
-  static bus::Topic<Payload> topic(const PeerOptions& options, bool pings) {
-    static const std::string names[2] = {"bench_echo_" + std::to_string(16 + sizeof(Payload::values)),
-                                         "bench_ping_" + std::to_string(16 + sizeof(Payload::values))};
-    return {names[pings], options.reliable ? QosClass::command : QosClass::sensor, bus::Scope::module};
+  static bus::Topic<Payload> topic(const std::string& name, const PeerOptions& options) {
+    return {name, options.reliable ? QosClass::command : QosClass::sensor, bus::Scope::module};
   }
+  static constexpr std::uint32_t bytes = 16 + sizeof(Payload::values);
 
   Payload sample_{};
   bus::Writer<Payload> writer_;
