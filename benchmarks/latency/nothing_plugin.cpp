@@ -7,7 +7,7 @@
 struct eciton_participant {};
 struct eciton_writer {};
 struct eciton_reader {
-  eciton_wake wake;
+  eciton_delivery delivery;
   bool full;
   uint32_t size;
   uint8_t bytes[8192];
@@ -23,7 +23,7 @@ int write(eciton_writer*, const uint8_t* cdr, uint32_t size) {
   std::memcpy(reader->bytes, cdr, size);
   reader->size = size;
   reader->full = true;
-  reader->wake.signal(reader->wake.context);
+  reader->delivery.signal(reader->delivery.context);
   return 1;
 }
 
@@ -48,14 +48,16 @@ const eciton_plugin plugin = [] {
   made.writer_destroy = [](eciton_writer* writer) { delete writer; };
   made.writer_write = write;
   made.writer_matched = [](eciton_writer*) { return 1u; };
-  made.reader_create = [](eciton_participant*, const char*, const eciton_type*, const eciton_qos*, eciton_wake wake,
-                          char*, uint32_t) { return the_reader = new eciton_reader{wake, false, 0, {}}; };
+  made.reader_create = [](eciton_participant*, const char*, const eciton_type*, const eciton_qos*,
+                          eciton_delivery delivery, char*,
+                          uint32_t) { return the_reader = new eciton_reader{delivery, false, 0, {}}; };
   made.reader_destroy = [](eciton_reader* reader) {
     the_reader = nullptr;
     delete reader;
   };
   made.reader_take = take;
   made.reader_matched = [](eciton_reader*) { return 1u; };
+  made.reader_losses = [](eciton_reader*, eciton_reader_losses* losses) { *losses = {}; };
   return made;
 }();
 
