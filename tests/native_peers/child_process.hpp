@@ -60,6 +60,7 @@ class ChildProcess {
     if (input_ >= 0) close(input_);
     input_ = -1;
   }
+  pid_t pid() const { return pid_; }
   void send(int signal) {
     if (running()) kill(pid_, signal);
   }
