@@ -17,7 +17,7 @@ std::string text(const char* format, double value) {
 }
 
 std::string cell_title(const Cell& cell) {
-  return std::to_string(cell.bytes) + " B, " + text("%.0f", cell.rate_Hz) + " Hz, " + cell.qos;
+  return std::to_string(cell.bytes) + " B, " + text("%.0f", cell.rate_Hz) + " Hz, " + cell.qos + ", " + cell.over;
 }
 
 double per(double sum, std::uint64_t count) { return count == 0 ? 0 : sum / static_cast<double>(count); }
@@ -55,7 +55,9 @@ class Figures {
                       {"block_s", options_.block_s},
                       {"quick", options_.quick},
                       {"interface", options_.network_interface},
-                      {"hosts", Json::array({options_.ping_host, options_.echo_host})},
+                      {"over", options_.over},
+                      {"hosts", options_.hosts},
+                      {"impairment", options_.impairment},
                       {"priority", options_.priority},
                       {"pinned", options_.pin}};
   }
@@ -91,7 +93,7 @@ class Figures {
       return resolves(all.size(), fraction) ? number_text(quantile(all, fraction)) : std::string("–");
     };
     table.rows.push_back({above.label + " / " + below.label + ", " + std::to_string(above.cell.bytes) + " B" +
-                              (above.cell.plain ? "" : ", " + above.cell.qos + " " + text("%.0f Hz", above.cell.rate_Hz)),
+                              (above.cell.plain ? "" : text(", %.0f Hz, ", above.cell.rate_Hz) + above.cell.qos + ", " + above.cell.over),
                           fraction == 0.5 ? "p50" : "p99", of(above), of(below), interval_text(ratio),
                           std::isnan(bar) ? "" : "≤ " + number_text(bar),
                           std::isnan(bar) ? "" : judged <= bar ? "held" : "missed"});
@@ -107,7 +109,7 @@ class Figures {
       if (const Stream* native = find("native." + ours.vendor + "." + ours.delivery, ours.cell)) {
         add_ratio(table, ours, *native, "tax_p50", 0.5, LatencyBars::tax_p50);
         if (!options_.quick) add_ratio(table, ours, *native, "tax_p99", 0.99, LatencyBars::tax_p99);
-        bars.bars.push_back({std::to_string(ours.cell.bytes) + " B" + (ours.cell.plain ? "" : " " + ours.cell.qos),
+        bars.bars.push_back({std::to_string(ours.cell.bytes) + " B" + (ours.cell.plain ? "" : " " + ours.cell.qos + ", " + ours.cell.over),
                              ours.label, ratio_interval(ours.round_trip_us, native->round_trip_us, 0.5, options_.seed)});
       }
     }
@@ -120,7 +122,10 @@ class Figures {
   }
 
   static double udp_bar(const Stream& ours) {
-    if (ours.vendor != "cyclonedds" || ours.cell.bytes != 256 || ours.cell.qos != "sensor") return std::nan("");
+    if (ours.vendor != "cyclonedds" || ours.cell.bytes != 256 || ours.cell.qos != "sensor" ||
+        ours.cell.over != "loopback") {
+      return std::nan("");
+    }
     return ours.delivery == "wake" ? LatencyBars::over_udp_wake : LatencyBars::over_udp_inline;
   }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "benchmarks/latency/lane.hpp"
+#include "benchmarks/latency/place.hpp"
 #include "core/base/result.hpp"
 
 namespace eciton::bench {
@@ -21,7 +22,9 @@ struct LatencyOptions {
   double block_s = 0.1;
   bool quick = false;
   std::string network_interface = "lo";
-  std::string ping_host, echo_host;    // network namespaces; empty: ours
+  std::vector<std::string> over{"loopback"};
+  std::vector<std::string> hosts;  // two network namespaces for "hosts" and "impaired"; none: a net of our own
+  std::vector<std::string> impairment{"delay=10ms", "jitter=3ms", "loss=5%"};  // as `eciton net set` takes it
   std::vector<std::string> peers;      // addresses for discovery; none: multicast
   std::uint32_t domain = 60;           // of the first lane; each next one has the next
   int priority = -1;                   // of all peers, SCHED_FIFO; 0: SCHED_OTHER; -1: 20 where it may be
@@ -38,9 +41,9 @@ const std::vector<std::string>& latency_baselines();
 struct Cell {
   std::uint32_t bytes = 0;
   double rate_Hz = 0;
-  std::string qos;
+  std::string qos, over;
+  bool plain = true;           // the first rate, class and place: metric names leave them out
   std::string suffix() const;  // "256": as metric names end
-  bool plain = true;           // the first rate and class: metric names leave them out
 };
 
 struct Plan {
@@ -52,7 +55,10 @@ struct Plan {
 /// Checks the options against each other and the machine; the Error is for exit status 2.
 Result<Plan> make_plan(LatencyOptions& options);
 /// The lanes of one QoS class. Baselines whose programs are not there become notes.
-std::vector<LaneSpec> lanes_of(const LatencyOptions& options, const std::string& qos, std::vector<std::string>& notes);
+std::vector<LaneSpec> lanes_of(const LatencyOptions& options, const Place& place, const std::string& qos,
+                               std::vector<std::string>& notes);
+/// What a program of one role is started with.
+Footing footing(const LatencyOptions& options, const Place& place, bool ping);
 
 /// The program of overhead.hpp.
 ProgramSpec overhead_program(const LatencyOptions& options);

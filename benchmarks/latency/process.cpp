@@ -22,8 +22,6 @@ namespace {
 
 constexpr Duration farewell = std::chrono::milliseconds(500);
 
-std::string namespace_path(const std::string& name) { return "/run/netns/" + name; }
-
 /// In the child, where nothing may allocate: errno of what failed, 0: none did.
 int stand(const Footing& footing, int network_namespace) {
   if (network_namespace >= 0 && ::setns(network_namespace, CLONE_NEWNET) != 0) return errno;
@@ -73,26 +71,14 @@ struct Words {
 }  // namespace
 
 Status check(const Footing& footing) {
-  if (!footing.network_namespace.empty() && ::access(namespace_path(footing.network_namespace).c_str(), F_OK) != 0) {
-    return Error{"there is no network namespace '" + footing.network_namespace +
-                 "'; 'ip netns list' shows those that are, 'eciton net up' makes hosts"};
-  }
   const pid_t probe = ::fork();
-  if (probe == 0) {
-    const int space = footing.network_namespace.empty()
-                          ? -1
-                          : ::open(namespace_path(footing.network_namespace).c_str(), O_RDONLY | O_CLOEXEC);
-    ::_exit(stand(footing, space));
-  }
+  if (probe == 0) ::_exit(stand(footing, -1));
   int status = 0;
   if (probe < 0 || ::waitpid(probe, &status, 0) != probe) return Error{"no process can be started"};
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     std::string what = footing.priority > 0 ? "SCHED_FIFO at priority " + std::to_string(footing.priority) : "";
     if (footing.cpu >= 0) what += std::string(what.empty() ? "" : ", ") + "processor " + std::to_string(footing.cpu);
-    if (!footing.network_namespace.empty()) {
-      what += std::string(what.empty() ? "" : ", ") + "network namespace " + footing.network_namespace;
-    }
-    return Error{"no right to or no such thing as " + what + ": " + std::strerror(WEXITSTATUS(status))};
+    return Error{"no right to, or no such thing as, " + what + ": " + std::strerror(WEXITSTATUS(status))};
   }
   return ok();
 }
@@ -102,8 +88,8 @@ Result<Process> Process::start(const ProgramSpec& spec) {
   process.name_ = spec.path.substr(spec.path.rfind('/') + 1);
   int space = -1;
   if (!spec.footing.network_namespace.empty()) {
-    space = ::open(namespace_path(spec.footing.network_namespace).c_str(), O_RDONLY | O_CLOEXEC);
-    if (space < 0) return Error{process.name_ + ": no network namespace '" + spec.footing.network_namespace + "'"};
+    space = ::open(spec.footing.network_namespace.c_str(), O_RDONLY | O_CLOEXEC);
+    if (space < 0) return Error{process.name_ + ": no network namespace " + spec.footing.network_namespace};
   }
   std::array<int, 2> input{}, output{}, report{};
   // Close-on-exec: a child that held another's input open would keep it from ending.
@@ -118,6 +104,7 @@ Result<Process> Process::start(const ProgramSpec& spec) {
   if (process.id_ == 0) {
     ::dup2(input[0], STDIN_FILENO);
     ::dup2(output[1], STDOUT_FILENO);
+    if (spec.quiet) ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
     become(spec, space, arguments.data(), environment.data(), report[1]);
   }
   for (const int fd : {input[0], output[1], report[1]}) ::close(fd);

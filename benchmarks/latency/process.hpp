@@ -16,7 +16,7 @@ namespace eciton::bench {
 
 /// What all threads of a program begin with.
 struct Footing {
-  std::string network_namespace;  // as `ip netns` names it; empty: ours
+  std::string network_namespace;  // its file; empty: ours
   int cpu = -1;                   // all on this one; -1: wherever
   int priority = 0;               // SCHED_FIFO; 0: SCHED_OTHER
 };
@@ -26,6 +26,7 @@ struct ProgramSpec {
   std::vector<std::string> arguments;
   std::map<std::string, std::string> environment;  // beside ours
   Footing footing;
+  bool quiet = false;  // its standard error is thrown away
 };
 
 class Process {
@@ -56,7 +57,7 @@ class Process {
   std::string heard_;
 };
 
-/// The first problem that `footing` has on this machine, before anything starts.
+/// What is wrong with the processor and the policy of `footing` on this machine, before anything starts.
 Status check(const Footing& footing);
 
 /// What Error::message begins with when `stop` ended a wait.
