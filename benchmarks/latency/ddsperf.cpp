@@ -27,8 +27,8 @@ std::string configuration(const LatencyOptions& options, const Place& place) {
   return xml + "<Internal><MultipleReceiveThreads>false</MultipleReceiveThreads></Internal></Domain></CycloneDDS>";
 }
 
-ProgramSpec end_of(const LatencyOptions& options, const Place& place, const std::string& program, const DdsperfRun& run,
-                   bool ping) {
+ProgramSpec end_of(const LatencyOptions& options, const Place& place, const std::string& program,
+                   const DdsperfRun& run, bool ping) {
   ProgramSpec spec;
   spec.path = program;
   spec.arguments = {"-i", std::to_string(options.domain + 20)};
@@ -58,8 +58,8 @@ std::optional<DdsperfWindow> parse_ddsperf(const std::string& line) {
                   &half.mean_us, &min_us, &half.p50_us, &half.p90_us, &half.p99_us, &half.max_us, &half.count) != 7) {
     return std::nullopt;
   }
-  return DdsperfWindow{2 * half.mean_us, 2 * half.p50_us, 2 * half.p90_us, 2 * half.p99_us, 2 * half.max_us,
-                       half.count};
+  return DdsperfWindow{2 * half.mean_us, 2 * half.p50_us, 2 * half.p90_us,
+                       2 * half.p99_us,  2 * half.max_us, half.count};
 }
 
 std::string find_ddsperf() {

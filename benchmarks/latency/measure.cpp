@@ -103,6 +103,7 @@ class Run {
     runs_.clear();
     if (ddsperf_.empty()) {
       note("missing: ddsperf is not in the path; it comes with cyclonedds-tools");
+      measured_.missing = true;
       return;
     }
     for (const Cell& cell : cells_) {

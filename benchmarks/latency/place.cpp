@@ -61,7 +61,8 @@ Result<Venue> Venue::open(const std::string& over, const LatencyOptions& options
     venue.place_.network_interface = options.network_interface;
     return venue;
   }
-  venue.place_.network_interface = options.network_interface == "lo" ? net::radio_interface : options.network_interface;
+  venue.place_.network_interface =
+      options.network_interface == "lo" ? net::radio_interface : options.network_interface;
   if (options.hosts.size() == 2) {
     venue.place_.ping_namespace = namespace_file(options.hosts[0]);
     venue.place_.echo_namespace = namespace_file(options.hosts[1]);

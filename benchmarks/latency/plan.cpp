@@ -54,8 +54,8 @@ class Programs {
                    std::uint32_t domain) const {
     ProgramSpec spec;
     spec.path = path(transport);
-    spec.arguments = {"--role", role == Role::ping ? "ping" : "echo", "--domain", std::to_string(domain), "--run",
-                      "bench" + std::to_string(::getpid()), "--interface", place_.network_interface};
+    spec.arguments = {"--role", role == Role::ping ? "ping" : "echo", "--domain",    std::to_string(domain),
+                      "--run",  "bench" + std::to_string(::getpid()), "--interface", place_.network_interface};
     for (const std::string& address : options_.peers) {
       spec.arguments.emplace_back("--peer");
       spec.arguments.push_back(address);
@@ -218,17 +218,19 @@ std::string Cell::suffix() const {
 
 Result<Plan> make_plan(LatencyOptions& options) {
   Plan plan;
-  const Status checks[] = {
-      check_words("--vendors", options.vendors, {"cyclonedds", "fastdds"}),
-      check_words("--qos", options.qos, {"sensor", "command"}),
-      check_words("--modes", options.deliveries, {"wake", "inline"}),
-      check_words("--baselines", options.baselines, latency_baselines()), check_numbers(options),
-      check_words("--over", options.over, {"loopback", "hosts", "impaired"}), settle_footing(options, plan.notes)};
+  const Status checks[] = {check_words("--vendors", options.vendors, {"cyclonedds", "fastdds"}),
+                           check_words("--qos", options.qos, {"sensor", "command"}),
+                           check_words("--modes", options.deliveries, {"wake", "inline"}),
+                           check_words("--baselines", options.baselines, latency_baselines()),
+                           check_numbers(options),
+                           check_words("--over", options.over, {"loopback", "hosts", "impaired"}),
+                           settle_footing(options, plan.notes)};
   for (const Status& each : checks) {
     if (!each) return each.error();
   }
   for (const std::string& over : options.over) {
-    if (const Status venue = check_venue(over, options); !venue) return Error{"--over " + over + ": " + venue.error().message};
+    if (const Status venue = check_venue(over, options); !venue)
+      return Error{"--over " + over + ": " + venue.error().message};
     for (const std::string& qos : options.qos) {
       for (const double rate_Hz : options.rates_Hz) {
         const bool plain =
@@ -239,6 +241,8 @@ Result<Plan> make_plan(LatencyOptions& options) {
   }
   plan.rounds = std::max<std::size_t>(2, std::lround(options.duration_s / options.block_s));
   const std::vector<LaneSpec> lanes = lanes_of(options, {}, options.qos.front(), plan.notes);
+  plan.missing = std::any_of(plan.notes.begin(), plan.notes.end(),
+                             [](const std::string& note) { return note.starts_with("missing: "); });
   if (!fs::exists(lanes.front().ping.path)) {
     return Error{lanes.front().ping.path + " is not there: it is built with the benchmarks"};
   }

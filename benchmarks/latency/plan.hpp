@@ -25,13 +25,13 @@ struct LatencyOptions {
   std::vector<std::string> over{"loopback"};
   std::vector<std::string> hosts;  // two network namespaces for "hosts" and "impaired"; none: a net of our own
   std::vector<std::string> impairment{"delay=10ms", "jitter=3ms", "loss=5%"};  // as `eciton net set` takes it
-  std::vector<std::string> peers;      // addresses for discovery; none: multicast
-  std::uint32_t domain = 60;           // of the first lane; each next one has the next
-  int priority = -1;                   // of all peers, SCHED_FIFO; 0: SCHED_OTHER; -1: 20 where it may be
-  bool pin = true;                     // pings on the first processor, echoes on the second
-  double patience_s = 10;              // for peers to appear
-  std::uint64_t seed = 1;              // of the bootstrap
-  std::string programs;                // directory of the peers; empty: beside this program
+  std::vector<std::string> peers;  // addresses for discovery; none: multicast
+  std::uint32_t domain = 60;       // of the first lane; each next one has the next
+  int priority = -1;               // of all peers, SCHED_FIFO; 0: SCHED_OTHER; -1: 20 where it may be
+  bool pin = true;                 // pings on the first processor, echoes on the second
+  double patience_s = 10;          // for peers to appear
+  std::uint64_t seed = 1;          // of the bootstrap
+  std::string programs;            // directory of the peers; empty: beside this program
 };
 
 /// The allowed words, for messages.
@@ -48,8 +48,9 @@ struct Cell {
 
 struct Plan {
   std::vector<Cell> cells;
-  std::size_t rounds = 0;  // blocks of each lane in each cell
+  std::size_t rounds = 0;          // blocks of each lane in each cell
   std::vector<std::string> notes;  // what cannot be measured here, and why
+  bool missing = false;            // a baseline that was asked for
 };
 
 /// Checks the options against each other and the machine; the Error is for exit status 2.

@@ -112,7 +112,8 @@ Result<Process> Process::start(const ProgramSpec& spec) {
   process.input_ = input[1];
   process.output_ = output[0];
   int error = process.id_ < 0 ? errno : 0;
-  if (process.id_ > 0) [[maybe_unused]] const auto got = ::read(report[0], &error, sizeof error);
+  if (process.id_ > 0) [[maybe_unused]]
+    const auto got = ::read(report[0], &error, sizeof error);
   ::close(report[0]);
   if (error != 0) return Error{spec.path + " cannot be started: " + std::strerror(error)};
   return process;
@@ -160,13 +161,16 @@ Result<std::string> Process::hear(Duration deadline, const runtime::StopFlag& st
       heard_.erase(0, end + 1);
       return line;
     }
-    const Duration left = deadline - monotonic_now();
-    if (left <= Duration::zero()) return Error{name_ + " did not answer in time"};
+    // What is there is heard even when the time is over: others may have used it up.
+    const Duration left = std::max(deadline - monotonic_now(), Duration::zero());
     std::array<pollfd, 2> wait{{{output_, POLLIN, 0}, {stop.file_descriptor(), POLLIN, 0}}};
     const auto left_ms = std::chrono::ceil<std::chrono::milliseconds>(left).count();
     if (::poll(wait.data(), wait.size(), static_cast<int>(std::min<std::int64_t>(left_ms, 1000))) < 0) continue;
     if (wait[1].revents != 0) return Error{interrupted};
-    if (wait[0].revents == 0) continue;
+    if (wait[0].revents == 0) {
+      if (left > Duration::zero()) continue;
+      return Error{name_ + " did not answer in time"};
+    }
     std::array<char, 65536> bytes;
     const ssize_t size = ::read(output_, bytes.data(), bytes.size());
     if (size <= 0) return Error{name_ + " " + how_it_ended()};

@@ -44,10 +44,10 @@ int run(Options options, const CLI::App& verb) {
   {
     bench::ProgressLine progress("bench latency");
     overhead = bench::measure_overhead(measure, stop);
-    measured = bench::measure_latency(measure, plan, stop,
-                                      [&](std::size_t finished, std::size_t all, double left_s, const std::string& doing) {
-                                        progress.show(finished, all, left_s, doing);
-                                      });
+    measured = bench::measure_latency(
+        measure, plan, stop, [&](std::size_t finished, std::size_t all, double left_s, const std::string& doing) {
+          progress.show(finished, all, left_s, doing);
+        });
   }
   const bench::Result result = bench::latency_result(measure, plan, measured, overhead);
   std::fputs(bench::to_text(result).c_str(), stdout);
@@ -61,7 +61,8 @@ int run(Options options, const CLI::App& verb) {
 void add_bench_latency(CLI::App& bench, Run& run_chosen) {
   auto options = std::make_shared<Options>();
   bench::LatencyOptions& measure = options->measure;
-  CLI::App& verb = *bench.add_subcommand("latency", "Round trip and one way, ours beside native DDS, UDP, ZeroMQ, LCM");
+  CLI::App& verb =
+      *bench.add_subcommand("latency", "Round trip and one way, ours beside native DDS, UDP, ZeroMQ, LCM");
   const auto list = [&](const char* name, auto& value, const char* help) {
     verb.add_option(name, value, help)->delimiter(',')->allow_extra_args(false)->capture_default_str();
   };
@@ -90,7 +91,8 @@ void add_bench_latency(CLI::App& bench, Run& run_chosen) {
   verb.add_option("--patience", measure.patience_s, "seconds for the peers to appear")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  verb.add_option("--programs", measure.programs, "directory of the bench_peer_* programs (default: beside this one)");
+  verb.add_option("--programs", measure.programs,
+                  "directory of the bench_peer_* programs (default: beside this one)");
   verb.add_option("--seed", measure.seed, "of the confidence intervals")->capture_default_str();
   verb.add_option("--json", options->files.json, "file for the figures");
   verb.add_option("--csv", options->files.csv, "file for the raw samples");
