@@ -33,7 +33,8 @@ struct Failure {
 
 fs::path program(const PathOptions& options, const std::string& name) {
   const fs::path file = options.programs / name;
-  if (!fs::exists(file)) throw BadInput{{"program " + file.string() + " is not there; build it, or give its directory"}};
+  if (!fs::exists(file))
+    throw BadInput{{"program " + file.string() + " is not there; build it, or give its directory"}};
   return file;
 }
 
@@ -53,8 +54,8 @@ std::vector<std::string> module_assignments(const PathOptions& options, const Fl
 
 std::string world_text(const PathOptions& options, const FlightVariant& variant, const fs::path& directory) {
   return "socket: " + (directory / "world.sock").string() + "\npace: wall\ntruth: false\ndds: " + variant.vendor +
-         "\nworld:\n  seed: " + std::to_string(options.seed) + "\n  modules:\n    - {id: " +
-         std::to_string(options.module_id) + "}\n";
+         "\nworld:\n  seed: " + std::to_string(options.seed) +
+         "\n  modules:\n    - {id: " + std::to_string(options.module_id) + "}\n";
 }
 
 struct Plan {
@@ -235,7 +236,8 @@ class Watch {
                       throw Failure{deploy::describe(launch, report)};
                     });
       if (progress_.stop.requested()) throw Failure{"interrupted"};
-      if (monotonic_now() > end) throw Failure{what + " within " + std::to_string(timeout / std::chrono::seconds(1)) + " s"};
+      if (monotonic_now() > end)
+        throw Failure{what + " within " + std::to_string(timeout / std::chrono::seconds(1)) + " s"};
       pilot_.poll();
     }
   }
@@ -296,12 +298,15 @@ FlightRecord fly(const PathOptions& options, const FlightVariant& variant, const
   const auto ticks_max = static_cast<std::size_t>(1.2 * ticks_per_s * options.seconds) + 100;
   FlightRecord record;
   Pilot pilot(p.config.module_participant("pilot"), options.module_id);
-  RingObserver observer(p.config.module_participant("observer"), 2 * ticks_max + 60'000);
+  std::optional<RingObserver> observer;
+  if (variant.staged()) observer.emplace(p.config.module_participant("observer"), 2 * ticks_max + 60'000);
   TapThread tap({.host_path = p.directory / "board.sock",
                  .world_path = p.directory / "world.sock",
                  .realtime_priority = options.realtime_priority,
                  .ticks_max = ticks_max},
-                [&] { observer.poll(); });
+                [&] {
+                  if (observer) observer->poll();
+                });
   try {
     write_file(p.directory / "module.yaml", p.module_tree.to_yaml());
     write_file(p.directory / "world.yaml", world_text(options, variant, p.directory));
@@ -314,7 +319,7 @@ FlightRecord fly(const PathOptions& options, const FlightVariant& variant, const
   deploy::stop_all(launches);
   tap.join();
   record.ticks = tap.tap().ticks();
-  record.trace = trace_path(record.ticks, observer.seen());
+  record.trace = observer ? trace_path(record.ticks, observer->seen()) : trace_link(record.ticks);
   record.inside = read_inside(p.inside_file);
   record.heartbeats = pilot.heartbeats();
   return record;

@@ -17,11 +17,9 @@ struct FlightVariant {
   std::string vendor;
   std::string layout;
   std::string name() const { return layout + "." + vendor; }
-};
-
-/// Time on the thread between the readings' arrival and the commands' departure; of one-process only.
-struct InsideSample {
-  std::int64_t in_ns = 0, out_ns = 0;
+  /// Whether there are stages to see from outside. A listener in one process would cost more than all the rest: what
+  /// it hears has to be sent.
+  bool staged() const { return layout != "one-process"; }
 };
 
 struct FlightRecord {

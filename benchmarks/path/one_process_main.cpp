@@ -5,11 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "benchmarks/path/module_flight.hpp"
+#include "benchmarks/path/path_trace.hpp"
 #include "core/base/log.hpp"
 #include "core/base/wall_clock.hpp"
 #include "core/runtime/realtime_thread.hpp"
 #include "core/runtime/service_group.hpp"
+#include "core/runtime/stop_signal.hpp"
 #include "deploy/module.hpp"
 #include "deploy/program.hpp"
 #include "hal/sim/make_devices.hpp"

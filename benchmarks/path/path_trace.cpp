@@ -23,6 +23,35 @@ std::uint64_t command_print(std::span<const RotorPrint> rotors) {
   return hash;
 }
 
+namespace {
+
+/// Counts a tick; whether it brought a command that is new.
+bool brings_news(const LinkTick& tick, std::uint64_t& before, PathTrace& trace) {
+  ++trace.ticks;
+  if (tick.in_ns == 0) {
+    ++trace.unanswered;
+    return false;
+  }
+  const bool repeated = tick.command == before;
+  before = tick.command;
+  trace.repeated += repeated ? 1 : 0;
+  return !repeated;
+}
+
+}  // namespace
+
+PathTrace trace_link(std::span<const LinkTick> ticks) {
+  PathTrace trace;
+  trace.samples.reserve(ticks.size());
+  std::uint64_t before = 0;
+  for (const LinkTick& tick : ticks) {
+    if (!brings_news(tick, before, trace)) continue;
+    trace.samples.push_back(
+        {.out_ns = tick.out_ns, .rotors_ns = tick.in_ns - tick.out_ns, .age_ns = tick.in_ns - tick.imu_stamp_ns});
+  }
+  return trace;
+}
+
 PathTrace trace_path(std::span<const LinkTick> ticks, std::span<const CommandSeen> commands) {
   std::unordered_map<std::uint64_t, const CommandSeen*> by_print;
   for (const CommandSeen& command : commands) by_print.emplace(command.print, &command);
@@ -30,17 +59,7 @@ PathTrace trace_path(std::span<const LinkTick> ticks, std::span<const CommandSee
   trace.samples.reserve(ticks.size());
   std::uint64_t before = 0;
   for (const LinkTick& tick : ticks) {
-    ++trace.ticks;
-    if (tick.in_ns == 0) {
-      ++trace.unanswered;
-      continue;
-    }
-    const bool repeated = tick.command == before;
-    before = tick.command;
-    if (repeated) {
-      ++trace.repeated;
-      continue;
-    }
+    if (!brings_news(tick, before, trace)) continue;
     const auto found = by_print.find(tick.command);
     if (found == by_print.end()) {
       ++trace.unseen;

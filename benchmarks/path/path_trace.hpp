@@ -40,16 +40,25 @@ struct PathSample {
   std::int64_t age_ns = 0;         // then, of the IMU sample by its own stamp
 };
 
+/// What a module in one process says of itself: its own work, without the link's ends.
+struct InsideSample {
+  std::int64_t in_ns = 0;   // readings were there
+  std::int64_t out_ns = 0;  // commands were made
+};
+
 struct PathTrace {
   std::vector<PathSample> samples;  // in the order of the commands
   std::uint64_t ticks = 0;
-  std::uint64_t unanswered = 0;   // ticks for which the host sent nothing
-  std::uint64_t repeated = 0;     // answered with the command of the tick before: none was new
-  std::uint64_t late = 0;         // answered with a command made of an earlier tick's IMU sample
-  std::uint64_t unseen = 0;       // answered with a command that was not seen on the ring
+  std::uint64_t unanswered = 0;  // ticks for which the host sent nothing
+  std::uint64_t repeated = 0;    // answered with the command of the tick before: none was new
+  std::uint64_t late = 0;        // answered with a command made of an earlier tick's IMU sample
+  std::uint64_t unseen = 0;      // answered with a command that was not seen on the ring
 };
 
 /// `ticks` and `commands` in the order of their times.
 PathTrace trace_path(std::span<const LinkTick> ticks, std::span<const CommandSeen> commands);
+
+/// From the link alone, for a module that acts on an IMU sample within its tick or not at all: without stages.
+PathTrace trace_link(std::span<const LinkTick> ticks);
 
 }  // namespace eciton::bench
