@@ -27,9 +27,10 @@ TEST(PathTraceTest, SplitsTheWayOfAnImuSampleIntoStages) {
 
 /// What a host that takes the last tick's command for this one's looks like.
 TEST(PathTraceTest, CountsACommandMadeOfAnEarlierTicksSampleAsLateAndAddsTheTick) {
-  const std::vector<LinkTick> ticks{{.imu_stamp_ns = 0, .out_ns = 100 * ms, .in_ns = 0, .command = 0},
-                                    {.imu_stamp_ns = 0, .out_ns = 102 * ms, .in_ns = 102 * ms + 50'000, .command = 7},
-                                    {.imu_stamp_ns = 0, .out_ns = 104 * ms, .in_ns = 104 * ms + 50'000, .command = 8}};
+  const std::vector<LinkTick> ticks{
+      {.imu_stamp_ns = 0, .out_ns = 100 * ms, .in_ns = 0, .command = 0},
+      {.imu_stamp_ns = 0, .out_ns = 102 * ms, .in_ns = 102 * ms + 50'000, .command = 7},
+      {.imu_stamp_ns = 0, .out_ns = 104 * ms, .in_ns = 104 * ms + 50'000, .command = 8}};
   const std::vector<CommandSeen> commands{{100 * ms + 1'900'000, 100 * ms + 1'800'000, 7},
                                           {102 * ms + 200'000, 102 * ms + 100'000, 8}};
   const PathTrace trace = trace_path(ticks, commands);
