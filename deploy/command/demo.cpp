@@ -13,6 +13,7 @@
 #include "deploy/command/demo_flight.hpp"
 #include "deploy/command/demo_report.hpp"
 #include "deploy/command/demo_view.hpp"
+#include "deploy/net/net.hpp"
 #include "deploy/supervisor/module_plan.hpp"
 
 namespace eciton::deploy {
@@ -47,10 +48,35 @@ void check_output_paths(const DemoOptions& options) {
   }
 }
 
+/// Before anything starts: rights, and the net of that name if it is up.
+std::optional<net::NetSpec> running_net(const DemoOptions& options) {
+  if (!options.hosts) return std::nullopt;
+  ok_or_throw(net::check_rights());
+  for (const net::KnownNet& known : net::known_nets()) {
+    if (known.up && known.spec.name == options.net) return known.spec;
+  }
+  return std::nullopt;
+}
+
+/// The net first: its hosts are where the others start.
+void start_fleet(const DemoFleet& fleet, Launches& launches) {
+  Launch* relay = fleet.own_net ? launches.back().get() : nullptr;
+  if (relay != nullptr) {
+    ok_or_throw(relay->start());
+    while (!net::wait_until_up(fleet.own_net->name, std::chrono::milliseconds(20))) {
+      relay->check([&](const ChildReport& report) { throw BadInput{{describe(*relay, report)}}; });
+    }
+  }
+  for (const auto& launch : launches) {
+    if (launch.get() != relay) ok_or_throw(launch->start());
+  }
+}
+
 int fly_demo(const DemoOptions& given) {
   if (!given.dds.empty()) ::unsetenv("ECITON_DDS");  // what is asked for here counts more
   const DemoOptions options = value_or_throw(resolve(given));
-  const DemoFleet fleet = value_or_throw(plan_demo(options, program_directory(), runtime_root()));
+  const DemoFleet fleet =
+      value_or_throw(plan_demo(options, program_directory(), runtime_root(), running_net(options)));
   ok_or_throw(check_vendors(fleet.plans));
   check_output_paths(options);
 
@@ -58,8 +84,11 @@ int fly_demo(const DemoOptions& given) {
   const runtime::StopOnSignals on_signals(stop);
   Launches launches = value_or_throw(claim_all(fleet.plans));
   write_files(fleet.files);
-  ok_or_throw(start_all(launches));
+  start_fleet(fleet, launches);
   DemoView view(stdout);
+  if (options.hosts)
+    view.say("on the radio of net " + options.net + "; disturb it with: eciton net set --name " + options.net +
+             " delay=20ms loss=10%");
   std::optional<DemoFailure> failure;
   {
     DemoFlight flight(fleet, launches, stop, view);
@@ -74,6 +103,7 @@ int fly_demo(const DemoOptions& given) {
   stop_all(launches);
   keep_logs(options, launches);
   launches.clear();
+  if (fleet.own_net) ok_or_throw(net::take_down(fleet.own_net->name));  // nothing, unless its relay was killed
   if (!failure) return 0;
   if (failure->interrupted) std::fprintf(stderr, "interrupted: everything is down\n");
   return failure->interrupted ? interrupted_status : 1;
@@ -89,11 +119,16 @@ void add_demo(CLI::App& app, Run& run) {
          "--dds", options->dds,
          "cyclonedds, fastdds, or mixed: they alternate between processes (default: ECITON_DDS, else cyclonedds)")
       ->check(CLI::IsMember({"cyclonedds", "fastdds", "mixed"}));
-  sub->add_option("--clock", options->clock, "lockstep: as fast as the machine goes; wall: in real time")
-      ->check(CLI::IsMember({"lockstep", "wall"}))
-      ->capture_default_str();
-  sub->add_option("--layout", options->layout, "services: a process each; composed: one for all of a module's")
-      ->check(CLI::IsMember({"services", "composed"}))
+  sub->add_option("--clock", options->clock,
+                  "lockstep: as fast as the machine goes; wall: in real time (default: lockstep; with --hosts wall)")
+      ->check(CLI::IsMember({"lockstep", "wall"}));
+  sub->add_option("--layout", options->layout,
+                  "services: a process each; composed: one for all of a module's (default: services; with --hosts "
+                  "composed)")
+      ->check(CLI::IsMember({"services", "composed"}));
+  sub->add_flag("--hosts", options->hosts,
+                "every module in a host of its own, on a radio that 'eciton net set' disturbs");
+  sub->add_option("--net", options->net, "with --hosts: the net's name; one that is up is used as it is")
       ->capture_default_str();
   sub->add_option("--seed", options->seed, "of the world")->capture_default_str();
   sub->add_option("--set", options->assignments, "key=value, of the modules' configs or of the world's")

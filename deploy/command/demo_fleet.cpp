@@ -54,6 +54,7 @@ std::vector<std::string> module_assignments(const DemoOptions& options, std::uin
                                "dds=" + vendor_of(options, index, 0),
                                "hal.backend=sim",
                                "hal.socket=" + socket.string()};
+  if (options.hosts) all.push_back(std::string("swarm_ring.interface=") + net::radio_interface);
   if (options.dds == mixed) {
     ModuleConfig layout;
     layout.layout = options.layout;
@@ -73,6 +74,7 @@ std::vector<std::string> module_assignments(const DemoOptions& options, std::uin
 Result<ConfigTree> world_tree(const DemoOptions& options, const fs::path& socket) {
   std::string text = "socket: " + socket.string() + "\npace: " + options.clock +
                      "\ntick_s: 0.002\ntruth: true\ndds: " + (options.dds == mixed ? "cyclonedds" : options.dds) +
+                     (options.hosts ? "\nnet: " + options.net : std::string()) +
                      "\nworld:\n  seed: " + std::to_string(options.seed) + "\n  modules:\n";
   for (std::uint32_t index = 0; index < options.modules; ++index) {
     const auto p = start_position(index);
@@ -118,6 +120,31 @@ Status add_world(const DemoOptions& options, const fs::path& programs, const fs:
   return ok();
 }
 
+/// Ids and domains are taken in that net only.
+void move_to_host(LaunchPlan& plan, const std::string& net) {
+  plan.network_namespace = net::host_namespace(net, plan.module_id);
+  for (PlannedProcess& process : plan.processes) process.child.network_namespace = plan.network_namespace;
+  for (std::string& claim : plan.claims) claim += " of net " + net;
+}
+
+/// The net that is up is used as it is; else there is one for this flight.
+Status add_net(const DemoOptions& options, const fs::path& programs, const std::optional<net::NetSpec>& running,
+               DemoFleet& fleet) {
+  fleet.swarm_namespace = net::host_namespace(options.net, net::operator_host);
+  if (running) {
+    if (running->modules >= options.modules) return ok();
+    return Error{"net " + options.net + " is up with " + std::to_string(running->modules) + " module hosts, " +
+                 std::to_string(options.modules) + " are needed; end it with 'eciton net down --name " + options.net +
+                 "', or give this demo another --net"};
+  }
+  fleet.own_net = net::NetSpec{.name = options.net, .modules = options.modules, .seed = options.seed};
+  LaunchPlan plan{.name = "net", .network_interface = {}, .claims = {}, .processes = {}};
+  plan.processes.push_back({.name = "relay", .vendor = {}, .child = {}});
+  plan.processes[0].child = {.name = "relay", .arguments = net::relay_call(*fleet.own_net, programs)};
+  fleet.plans.push_back(std::move(plan));
+  return ok();
+}
+
 Status add_module(const DemoOptions& options, std::uint32_t index, const fs::path& programs,
                   const fs::path& directory, DemoFleet& fleet) {
   const std::vector<std::string> assignments = module_assignments(options, index, directory / "world.sock");
@@ -128,6 +155,7 @@ Status add_module(const DemoOptions& options, std::uint32_t index, const fs::pat
   const fs::path file = directory / (config->name + ".yaml");
   fleet.files.push_back({file, tree.to_yaml()});
   fleet.plans.push_back(plan_module(*config, file, {}, programs));
+  if (options.hosts) move_to_host(fleet.plans.back(), options.net);
   fleet.start_m.push_back(start_position(index));
   fleet.swarm_domain = config->swarm_ring.domain;
   fleet.swarm_interface = config->swarm_ring.network_interface;
@@ -149,16 +177,26 @@ Result<DemoOptions> resolve(DemoOptions options) {
   options.assignments = rest;
   if (const Status status = read_config(tree, options); !status) return status.error();
   if (options.dds.empty()) options.dds = bus::chosen_vendor("cyclonedds");
+  if (options.hosts && options.clock == "lockstep") {
+    return Error{"--clock lockstep with --hosts: the flight would wait for whatever the radio delays; expected wall"};
+  }
+  if (options.clock.empty()) options.clock = options.hosts ? "wall" : "lockstep";
+  if (options.layout.empty()) options.layout = options.hosts ? "composed" : "services";
+  if (const Status named = net::check_name(options.net); !named) return Error{"--net: " + named.error().message};
   return options;
 }
 
-Result<DemoFleet> plan_demo(const DemoOptions& options, const fs::path& programs, const fs::path& root) {
+Result<DemoFleet> plan_demo(const DemoOptions& options, const fs::path& programs, const fs::path& root,
+                            const std::optional<net::NetSpec>& running) {
   DemoFleet fleet;
   const fs::path directory = root / "demo";
   fleet.tool_vendor = options.dds == mixed ? "cyclonedds" : options.dds;
   if (const Status status = add_world(options, programs, directory, fleet); !status) return status.error();
   for (std::uint32_t index = 0; index < options.modules; ++index) {
     if (const Status status = add_module(options, index, programs, directory, fleet); !status) return status.error();
+  }
+  if (options.hosts) {
+    if (const Status status = add_net(options, programs, running, fleet); !status) return status.error();
   }
   for (LaunchPlan& plan : fleet.plans) pin_vendors(plan);
   return fleet;

@@ -23,6 +23,12 @@ bus::ParticipantConfig participant(const DemoFleet& fleet, const std::string& na
           .peers = {}};
 }
 
+/// With all its sockets and threads in the operator's host, if there is one.
+bus::Participant join_swarm(const DemoFleet& fleet) {
+  const net::InNamespace inside(fleet.swarm_namespace);
+  return bus::Participant(participant(fleet, "demo", fleet.swarm_domain, fleet.swarm_interface));
+}
+
 }  // namespace
 
 DemoFlight::DemoFlight(const DemoFleet& fleet, Launches& launches, const runtime::StopFlag& stop, DemoView& view)
@@ -30,12 +36,13 @@ DemoFlight::DemoFlight(const DemoFleet& fleet, Launches& launches, const runtime
       launches_(launches),
       stop_(stop),
       view_(view),
-      swarm_(participant(fleet, "demo", fleet.swarm_domain, fleet.swarm_interface)),
+      swarm_(join_swarm(fleet)),
       operator_(swarm_),
       fault_(swarm_.create_reader(topics::fault)) {
   for (const LaunchPlan& plan : fleet.plans) {
     if (plan.module_id == 0) continue;
     ids_.push_back(plan.module_id);
+    const net::InNamespace inside(plan.network_namespace);
     ears_.push_back(
         std::make_unique<DemoEar>(plan.module_id, participant(fleet, "demo", plan.domain, plan.network_interface)));
   }

@@ -4,12 +4,13 @@
 #include "deploy/command/down.hpp"
 #include "deploy/command/experiment.hpp"
 #include "deploy/command/fly.hpp"
+#include "deploy/command/net.hpp"
 #include "deploy/command/status.hpp"
 #include "deploy/command/topic.hpp"
 #include "deploy/command/up.hpp"
 
 int main(int argc, char** argv) {
   using namespace eciton::deploy;
-  return run_command_line(argc, argv,
-                          {&add_fly, &add_up, &add_down, &add_status, &add_demo, &add_experiment, &add_topic});
+  return run_command_line(
+      argc, argv, {&add_fly, &add_up, &add_down, &add_status, &add_demo, &add_net, &add_experiment, &add_topic});
 }

@@ -8,6 +8,7 @@
 #include "core/robot/arrays.hpp"
 #include "core/runtime/stop_signal.hpp"
 #include "deploy/module_config.hpp"
+#include "deploy/net/hosts.hpp"
 #include "deploy/program.hpp"
 #include "deploy/world_file.hpp"
 #include "hal/sim/world_server.hpp"
@@ -81,6 +82,7 @@ int run(int argc, char** argv) {
   std::vector<std::unique_ptr<TruthObserver>> observers;
   if (file.truth) {
     for (const std::uint32_t module : world.modules()) {
+      const net::InNamespace inside(file.net.empty() ? "" : net::host_namespace(file.net, module));
       observers.push_back(std::make_unique<TruthObserver>(file, module));
     }
   }

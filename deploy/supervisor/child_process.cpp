@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <linux/close_range.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -43,7 +44,8 @@ std::vector<std::string> child_environment(const std::vector<std::pair<std::stri
 }
 
 /// In the child, between fork and exec: only what is async-signal-safe, since the parent may have threads.
-[[noreturn]] void become(char* const* arguments, char* const* environment, int log, int report, pid_t parent) {
+[[noreturn]] void become(char* const* arguments, char* const* environment, int log, int report, pid_t parent,
+                         const char* network_namespace) {
   ::setpgid(0, 0);
   // Not SIGTERM: nothing may be left behind when the supervisor itself is killed, not even what hangs.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -58,6 +60,11 @@ std::vector<std::string> child_environment(const std::vector<std::pair<std::stri
   ::dup2(null, STDIN_FILENO);
   ::dup2(log, STDOUT_FILENO);
   ::dup2(log, STDERR_FILENO);
+  if (*network_namespace != '\0' && ::setns(::open(network_namespace, O_RDONLY), CLONE_NEWNET) != 0) {
+    const int error = errno;
+    [[maybe_unused]] const auto written = ::write(report, &error, sizeof error);
+    ::_exit(127);
+  }
   // Vendors' libraries open sockets without close-on-exec; a child must not keep its parent's ports.
   ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
   ::execve(arguments[0], arguments, environment);
@@ -78,6 +85,11 @@ Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
   std::vector<std::string> environment = child_environment(call.environment);
   const std::vector<char*> argument_pointers = pointers(arguments);
   const std::vector<char*> environment_pointers = pointers(environment);
+  const std::string network_namespace = call.network_namespace;
+  if (!network_namespace.empty() && ::access(network_namespace.c_str(), F_OK) != 0) {
+    return Error{"network namespace " + network_namespace + " for " + call.arguments[0] + ": " +
+                 std::strerror(errno)};
+  }
   const int log = ::open(call.log_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (log < 0) return Error{"log file " + call.log_file.string() + " cannot be opened: " + std::strerror(errno)};
   std::array<int, 2> report{};
@@ -89,7 +101,8 @@ Result<ChildProcess> ChildProcess::start(const ProgramCall& call) {
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
   const int fork_error = errno;
-  if (pid == 0) become(argument_pointers.data(), environment_pointers.data(), log, report[1], parent);
+  if (pid == 0)
+    become(argument_pointers.data(), environment_pointers.data(), log, report[1], parent, network_namespace.c_str());
   ::close(log);
   ::close(report[1]);
   int error = pid < 0 ? fork_error : 0;

@@ -19,6 +19,7 @@ struct ProgramCall {
   std::vector<std::string> arguments;                              // the first one is the program's path
   std::vector<std::pair<std::string, std::string>> environment{};  // over the parent's; an empty value unsets
   std::filesystem::path log_file;                                  // appended to
+  std::filesystem::path network_namespace{};                       // as "/run/netns/eciton-m1"; empty: the caller's
 };
 
 /// How a process ended: an exit status, or the signal that ended it.

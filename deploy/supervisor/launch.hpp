@@ -14,8 +14,8 @@
 namespace eciton::deploy {
 
 struct PlannedProcess {
-  std::string name;  // "control"; "services" when composed
-  std::string vendor;
+  std::string name;    // "control"; "services" when composed
+  std::string vendor;  // empty: it uses none
   ChildSpec child;
 };
 
@@ -24,7 +24,8 @@ struct LaunchPlan {
   std::uint32_t module_id = 0;  // 0: not a module
   std::uint32_t domain = 0;     // of its module ring
   std::string network_interface;
-  std::vector<std::string> claims;  // of the host, as "module id 3"
+  std::filesystem::path network_namespace{};  // of that interface; empty: ours
+  std::vector<std::string> claims;            // of the host, as "module id 3"
   std::vector<PlannedProcess> processes;
 };
 

@@ -49,7 +49,9 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
 Status check_vendors(const std::vector<LaunchPlan>& plans) {
   std::set<std::string> vendors;
   for (const LaunchPlan& plan : plans) {
-    for (const PlannedProcess& process : plan.processes) vendors.insert(process.vendor);
+    for (const PlannedProcess& process : plan.processes) {
+      if (!process.vendor.empty()) vendors.insert(process.vendor);
+    }
   }
   for (const std::string& vendor : vendors) {
     if (const auto plugin = bus::load_plugin(vendor); !plugin) return plugin.error();

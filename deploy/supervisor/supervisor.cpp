@@ -36,7 +36,8 @@ Status Supervisor::start(const ChildSpec& spec) {
 Status Supervisor::launch(Child& child) {
   Result<ChildProcess> process = ChildProcess::start({.arguments = child.spec.arguments,
                                                       .environment = child.spec.environment,
-                                                      .log_file = log_file(child.spec.name)});
+                                                      .log_file = log_file(child.spec.name),
+                                                      .network_namespace = child.spec.network_namespace});
   if (!process) return process.error();
   child.process.emplace(std::move(process).value());
   child.report.pid = child.process->pid();

@@ -20,6 +20,7 @@ struct ChildSpec {
   std::string name;  // also of its log file
   std::vector<std::string> arguments;
   std::vector<std::pair<std::string, std::string>> environment{};
+  std::filesystem::path network_namespace{};  // empty: the supervisor's
 };
 
 struct SupervisorConfig {
