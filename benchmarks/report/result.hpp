@@ -19,7 +19,7 @@ using Json = deploy::Json;
 struct Table {
   std::string title;
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<std::string>> rows = {};
 };
 
 /// Side by side within its group.
@@ -31,8 +31,8 @@ struct Bar {
 
 struct Bars {
   std::string title, unit;
-  std::vector<Bar> bars;
-  std::optional<double> limit;  // drawn as a line
+  std::vector<Bar> bars = {};
+  std::optional<double> limit = {};  // drawn as a line
 };
 
 struct Result {
