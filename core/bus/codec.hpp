@@ -179,7 +179,7 @@ KeyHash key_hash(const T& sample) {
   return hash;
 }
 
-/// The key hash from bytes. Keys are the leading members of every type (the generator sees to it), so a
+/// The key hash from bytes. Keys are the leading members of every type (the generator refuses others), so a
 /// sample and a serialized key begin alike. The shape eciton_type wants.
 template <Message T>
 int key_hash_of_bytes(const std::uint8_t* cdr, std::uint32_t size, int /*key_only*/, std::uint8_t hash[16]) {

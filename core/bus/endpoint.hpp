@@ -44,6 +44,11 @@ TopicInfo info(const Topic<T>& topic) {
 /// The one mapping from QoS class to what a plugin is asked for.
 eciton_qos plugin_qos(QosClass qos, bool keyed);
 
+/// The vendor's part of a reader's statistics. Real-time safe.
+void set_losses(ReaderStatistics& statistics, const eciton_plugin& plugin, eciton_reader* reader) noexcept;
+/// What can be told of raw bytes: they are not too many, and have the type's key.
+bool may_be_sample(const eciton_type& type, std::span<const std::uint8_t> cdr, KeyHash* key = nullptr) noexcept;
+
 class ReaderCore {
  public:
   ReaderCore(Participant& participant, const TopicInfo& topic);
@@ -68,14 +73,14 @@ class ReaderCore {
 
   const TopicInfo& topic() const { return topic_; }
   std::uint32_t matched() const;
-  const ReaderStatistics& statistics() const { return statistics_; }
+  const ReaderStatistics& statistics() const;
   Participant& participant() { return participant_; }
 
  protected:
   friend class WriterCore;
   Participant& participant_;
   TopicInfo topic_;
-  ReaderStatistics statistics_;
+  mutable ReaderStatistics statistics_;  // the vendor's part is fetched when asked for
   std::uint64_t news_ = 0;
   TimePoint newest_stamp_{-std::chrono::hours(24 * 365 * 100)};  // "never", far from overflow
 

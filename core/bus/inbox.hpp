@@ -11,7 +11,8 @@
 
 namespace eciton::bus {
 
-/// Every sample that arrived is in exactly one of delivered, replaced, or a dropped_* count, or queued.
+/// Every sample that arrived is in exactly one of delivered, replaced, or a dropped_* count, or queued. What the
+/// vendor lost before is beside these: counted as far as the vendor tells (core/bus/plugin.h), and in none of them.
 struct ReaderStatistics {
   std::uint64_t received = 0;
   std::uint64_t delivered = 0;
@@ -20,8 +21,12 @@ struct ReaderStatistics {
   std::uint64_t dropped_late = 0;       // a newer one of its key had been delivered (sensor class)
   std::uint64_t dropped_expired = 0;    // older than the topic's lifespan when taken
   std::uint64_t dropped_overflow = 0;   // over the queue's bound
+  std::uint64_t vendor_lost = 0;        // on the way
+  std::uint64_t vendor_rejected = 0;    // malformed, or over a bound of the vendor's
+  std::uint64_t vendor_replaced = 0;    // by a newer one of its key, in the vendor's own history
 
   std::uint64_t dropped() const { return dropped_malformed + dropped_late + dropped_expired + dropped_overflow; }
+  std::uint64_t dropped_by_vendor() const { return vendor_lost + vendor_rejected; }
 };
 
 template <Message T>

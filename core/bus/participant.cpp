@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 
+#include "core/bus/inline_reader.hpp"
 #include "core/bus/plugin_loader.hpp"
 
 namespace eciton::bus {
@@ -52,7 +53,9 @@ Participant::~Participant() { plugin_->participant_destroy(handle_); }
 
 std::uint64_t Participant::dropped() const {
   std::uint64_t sum = dropped_by_gone_readers_;
-  for (const ReaderCore* reader : readers_) sum += reader->statistics().dropped();
+  const auto add = [&sum](const ReaderStatistics& count) { sum += count.dropped() + count.dropped_by_vendor(); };
+  for (const ReaderCore* reader : readers_) add(reader->statistics());
+  for (const InlineReaderCore* reader : inline_readers_) add(reader->statistics());
   return sum;
 }
 
@@ -63,6 +66,26 @@ void Participant::set_all_wake(bool wake) {
 
 RawWriter Participant::create_raw_writer(const TopicInfo& topic) { return {*this, topic}; }
 RawReader Participant::create_raw_reader(const TopicInfo& topic) { return {*this, topic}; }
+InlineRawReader Participant::create_inline_raw_reader(const TopicInfo& topic, RawReader::Sink sink, void* context) {
+  return {*this, topic, sink, context};
+}
+
+void set_losses(ReaderStatistics& statistics, const eciton_plugin& plugin, eciton_reader* reader) noexcept {
+  eciton_reader_losses losses{};
+  plugin.reader_losses(reader, &losses);
+  statistics.vendor_lost = losses.lost;
+  statistics.vendor_rejected = losses.rejected;
+  statistics.vendor_replaced = losses.replaced;
+}
+
+bool may_be_sample(const eciton_type& type, std::span<const std::uint8_t> cdr, KeyHash* key) noexcept {
+  KeyHash hash{};
+  const bool good =
+      cdr.size() >= encapsulation_size && cdr.size() <= type.size_max &&
+      (type.key_size == 0 || type.key_hash(cdr.data(), static_cast<std::uint32_t>(cdr.size()), 0, hash.data()) != 0);
+  if (key != nullptr) *key = hash;
+  return good;
+}
 
 namespace {
 
@@ -76,24 +99,25 @@ ReaderCore::ReaderCore(Participant& participant, const TopicInfo& topic)
     : participant_(participant), topic_(topic), name_(topic.name), wakes_(participant.readers_wake_) {
   topic_.name = name_;
   const eciton_qos qos = plugin_qos(topic.qos, topic.type.key_size > 0);
-  const eciton_wake wake{[](void* context) {
-                           auto* reader = static_cast<ReaderCore*>(context);
-                           // Sequentially consistent with set_wakes and the fetch that follows it: either we
-                           // see that it wakes, or that fetch sees the sample.
-                           reader->fresh_.store(true);
-                           if (reader->wakes_.load()) reader->participant_.waker_->signal();
-                         },
-                         this};
+  const auto signal = [](void* context) {
+    auto* reader = static_cast<ReaderCore*>(context);
+    // Sequentially consistent with set_wakes and the fetch that follows it: either we see that it wakes, or that
+    // fetch sees the sample.
+    reader->fresh_.store(true);
+    if (reader->wakes_.load()) reader->participant_.waker_->signal();
+  };
+  const eciton_delivery delivery{.signal = signal, .sample = nullptr, .context = this};
   std::array<char, 512> error{};
-  handle_ = participant_.plugin_->reader_create(participant_.handle_, name_.c_str(), &topic_.type, &qos, wake,
+  handle_ = participant_.plugin_->reader_create(participant_.handle_, name_.c_str(), &topic_.type, &qos, delivery,
                                                 error.data(), error.size());
   if (handle_ == nullptr) throw BadInput{{failed("reader", name_, error.data())}};
   participant_.readers_.push_back(this);
 }
 
 ReaderCore::~ReaderCore() {
+  const ReaderStatistics& last = statistics();
   participant_.plugin_->reader_destroy(handle_);
-  participant_.dropped_by_gone_readers_ += statistics_.dropped();
+  participant_.dropped_by_gone_readers_ += last.dropped() + last.dropped_by_vendor();
   std::erase(participant_.readers_, this);
 }
 
@@ -109,6 +133,11 @@ void ReaderCore::fetch() noexcept {
     if (participant_.plugin_->reader_take(handle_, batch, sink, this) < batch) return;
   }
   fresh_.store(true, std::memory_order_release);  // there may be more: go on at the next take
+}
+
+const ReaderStatistics& ReaderCore::statistics() const {
+  set_losses(statistics_, *participant_.plugin_, handle_);
+  return statistics_;
 }
 
 std::uint32_t ReaderCore::matched() const { return participant_.plugin_->reader_matched(handle_); }
@@ -135,6 +164,9 @@ bool WriterCore::write(std::span<const std::uint8_t> cdr) noexcept {
     if (reader->name_ != name_) continue;
     reader->accept(cdr);
     if (reader->wakes_.load()) participant_.waker_->signal();
+  }
+  for (InlineReaderCore* reader : participant_.inline_readers_) {
+    if (reader->topic_name() == name_) reader->deliver(cdr);
   }
   return accepted;
 }

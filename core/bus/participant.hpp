@@ -20,6 +20,10 @@ template <Message T>
 class Reader;
 class RawWriter;
 class RawReader;
+template <Message T>
+class InlineReader;
+class InlineRawReader;
+class InlineReaderCore;
 
 struct ParticipantConfig {
   std::string vendor = "cyclonedds";  // or fastdds, sim_network
@@ -51,6 +55,16 @@ class Participant {
   /// Endpoints that carry a topic's bytes untouched, for the radio and for tools.
   RawWriter create_raw_writer(const TopicInfo& topic);
   RawReader create_raw_reader(const TopicInfo& topic);
+  /// Readers that call `callback(context, sample)` at once, in the vendor's thread: for tools and benchmarks, which
+  /// include core/bus/inline_reader.hpp. Services never use them.
+  template <Message T>
+  InlineReader<T> create_inline_reader(const Topic<T>& topic, void (*callback)(void* context, const T& sample),
+                                       void* context) {
+    return InlineReader<T>(*this, topic, callback, context);
+  }
+  InlineRawReader create_inline_raw_reader(const TopicInfo& topic,
+                                           void (*sink)(void* context, std::span<const std::uint8_t> cdr),
+                                           void* context);
 
   /// The time ages are reckoned from; the executor sets it before each step.
   void set_now(TimePoint now) { now_ = now; }
@@ -71,12 +85,13 @@ class Participant {
   void set_all_wake(bool wake);
   const ParticipantConfig& config() const { return config_; }
   const char* vendor_version() const { return plugin_->version; }
-  /// Over all its readers, those gone included.
+  /// Over all its readers, those gone included, what the vendor lost or rejected as well.
   std::uint64_t dropped() const;
 
  private:
   friend class WriterCore;
   friend class ReaderCore;
+  friend class InlineReaderCore;
 
   ParticipantConfig config_;
   const eciton_plugin* plugin_;
@@ -87,6 +102,7 @@ class Participant {
   TimePoint now_{};
   std::array<Duration, 128> clock_offset_{};
   std::vector<ReaderCore*> readers_;
+  std::vector<InlineReaderCore*> inline_readers_;
   std::uint64_t dropped_by_gone_readers_ = 0;
 };
 

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-#define ECITON_PLUGIN_ABI_VERSION 1u
+#define ECITON_PLUGIN_ABI_VERSION 2u
 /* A plugin is lib<prefix><vendor>.so and exports one function of this name. */
 #define ECITON_PLUGIN_PREFIX "eciton_dds_"
 #define ECITON_PLUGIN_ENTRY "eciton_dds_plugin"
@@ -39,14 +39,22 @@ typedef struct eciton_participant_config {
   uint32_t lease_ms;             /* liveliness lease, equal on all participants of a domain */
 } eciton_participant_config;
 
-/* Called from a vendor's thread when a reader may have samples: it only wakes, never works. */
-typedef struct eciton_wake {
-  void (*signal)(void* context);
-  void* context;
-} eciton_wake;
-
 /* Receives one sample's bytes (encapsulation header included), valid during the call. */
 typedef void (*eciton_sink)(void* context, const uint8_t* cdr, uint32_t size);
+
+/* How a reader learns of its samples; both are called from a vendor's thread. */
+typedef struct eciton_delivery {
+  void (*signal)(void* context); /* there may be samples to take: it only wakes, never works */
+  eciton_sink sample;            /* or else, unless NULL: is given every sample at once; take is not called */
+  void* context;
+} eciton_delivery;
+
+/* What did not get as far as take, as far as the vendor tells. */
+typedef struct eciton_reader_losses {
+  uint64_t lost;     /* on the way, without a newer one in its place: missing numbers of a best-effort writer */
+  uint64_t rejected; /* came, but malformed or over a bound; each time it came */
+  uint64_t replaced; /* by a newer one of its key before it was taken: keep last, the reader's or the writer's */
+} eciton_reader_losses;
 
 typedef struct eciton_participant eciton_participant;
 typedef struct eciton_writer eciton_writer;
@@ -54,7 +62,8 @@ typedef struct eciton_reader eciton_reader;
 
 /* Creating functions return NULL and write a message (what, where, what would be right) into `error`.
  * write and take never block on the network, and allocate nothing outside the vendor's own library.
- * A reader is never given samples of writers of its own participant: the framework delivers those. */
+ * A reader is never given samples of writers of its own participant: the framework delivers those.
+ * Any thread may ask for matched and losses. */
 typedef struct eciton_plugin {
   uint32_t abi_version; /* ECITON_PLUGIN_ABI_VERSION */
   uint32_t struct_size; /* sizeof(eciton_plugin) */
@@ -72,11 +81,12 @@ typedef struct eciton_plugin {
   uint32_t (*writer_matched)(eciton_writer* writer);                             /* readers matched now */
 
   eciton_reader* (*reader_create)(eciton_participant* participant, const char* topic, const eciton_type* type,
-                                  const eciton_qos* qos, eciton_wake wake, char* error, uint32_t error_size);
+                                  const eciton_qos* qos, eciton_delivery delivery, char* error, uint32_t error_size);
   void (*reader_destroy)(eciton_reader* reader); /* no signal after it returns */
   uint32_t (*reader_take)(eciton_reader* reader, uint32_t count_max, eciton_sink sink,
                           void* context); /* samples given */
   uint32_t (*reader_matched)(eciton_reader* reader);
+  void (*reader_losses)(eciton_reader* reader, eciton_reader_losses* losses); /* since it was created */
 } eciton_plugin;
 
 const eciton_plugin* eciton_dds_plugin(void);

@@ -16,15 +16,13 @@ class RawReader::Core final : public ReaderCore {
   void accept(std::span<const std::uint8_t> cdr) noexcept override {
     ++statistics_.received;
     KeyHash key{};
-    const auto size = static_cast<std::uint32_t>(cdr.size());
-    if (size > topic_.type.size_max || size < encapsulation_size ||
-        (topic_.type.key_size > 0 && topic_.type.key_hash(cdr.data(), size, 0, key.data()) == 0)) {
+    if (!may_be_sample(topic_.type, cdr, &key)) {
       ++statistics_.dropped_malformed;
       return;
     }
     Slot& slot = slot_for(key);
     std::copy(cdr.begin(), cdr.end(), slot.bytes.begin());
-    slot.size = size;
+    slot.size = static_cast<std::uint32_t>(cdr.size());
     slot.key = key;
   }
 

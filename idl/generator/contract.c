@@ -76,9 +76,22 @@ static void check_type(check_t* check, const idl_member_t* member, const idl_dec
   check_element(check, member, type, what);
 }
 
+// A sample and its serialized key then begin alike, and one decoder reads the key of both (core/bus/codec.hpp).
+static bool stands_behind_others(const idl_struct_t* owner, const idl_member_t* key) {
+  const idl_member_t* member;
+  IDL_FOREACH(member, owner->members) {
+    if (member == key) return false;
+    if (!member->key.value) return true;
+  }
+  return false;
+}
+
 static void check_key(check_t* check, const idl_member_t* member, const char* what) {
   const idl_struct_t* owner = idl_parent(member);
   if (!member->key.value) return;
+  if (stands_behind_others(owner, member)) {
+    refuse(check, &member->node, "%s: a key behind members that are none; keys come first", what);
+  }
   if (owner->nested.value) {
     refuse(check, &member->node, "%s: a key in a @nested struct; keys stand in the topic itself", what);
   }

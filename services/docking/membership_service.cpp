@@ -135,6 +135,8 @@ void Membership::publish(TimePoint now) noexcept {
   out.phase = static_cast<msg::ViewPhase>(announcement.phase);
   out.start_ns = to_ns(announcement.start);
   out.active = active.has_value();
+  static_assert(decltype(out.members)::bound() == decltype(active->members)::bound() &&
+                decltype(out.links)::bound() == decltype(active->links)::bound());
   if (active) {
     out.active_epoch = active->epoch;
     out.active_since_ns = to_ns(agreement_.active_since());

@@ -2,6 +2,9 @@
 // What the vendors' own libraries do is counted apart, and recorded.
 #include "tests/allocation_guard/allocation_guard.hpp"
 
+#include <optional>
+
+#include "core/bus/inline_reader.hpp"
 #include "tests/conformance/ring.hpp"
 
 namespace eciton::bus::conformance {
@@ -97,6 +100,51 @@ TEST_P(AllocationConformance, WriteAndTakeLeaveTheHeapAlone) {
       std::uintmax_t{vendor}, std::uintmax_t{traffic.sensor.statistics().delivered},
       std::uintmax_t{traffic.command.statistics().delivered}, std::uintmax_t{traffic.state.statistics().delivered},
       std::uintmax_t{traffic.event.statistics().delivered});
+}
+
+/// Guards the thread it is called in from one call to a later one: all that the framework does there in between.
+class GuardedCalls {
+ public:
+  static void call(void* self, const msg::ModuleState&) { static_cast<GuardedCalls*>(self)->count(); }
+  bool done() const { return done_; }
+  std::uint64_t framework() const { return framework_; }
+  const std::string& description() const { return description_; }
+
+ private:
+  static constexpr int from = 100, to = 400;
+  void count() {
+    if (done_) return;
+    if (++calls_ == from) {
+      thread_ = std::this_thread::get_id();
+      guard_.emplace();
+    } else if (calls_ >= to && thread_ == std::this_thread::get_id()) {
+      framework_ = guard_->framework();
+      if (framework_ > 0) description_ = guard_->describe();
+      guard_.reset();
+      done_ = true;
+    }
+  }
+
+  int calls_ = 0;
+  std::thread::id thread_;
+  std::optional<AllocationGuard> guard_;
+  std::uint64_t framework_ = 0;
+  std::string description_;
+  std::atomic<bool> done_{false};
+};
+
+TEST_P(AllocationConformance, AnInlineReaderLeavesTheHeapAlone) {
+  if (!AllocationGuard::available()) GTEST_SKIP() << "the sanitizers bring a heap of their own";
+  GuardedCalls calls;
+  auto writer = a.create_writer(topics::module_state);
+  auto reader = b.create_inline_reader(topics::module_state, &GuardedCalls::call, &calls);
+  ASSERT_TRUE(matched(writer, reader));
+  for (int k = 0; k < 20'000 && !calls.done(); ++k) {
+    writer.write(state_at(1, k));
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  ASSERT_TRUE(calls.done());
+  EXPECT_EQ(calls.framework(), 0u) << calls.description();
 }
 
 INSTANTIATE_TEST_SUITE_P(Allocation, AllocationConformance, ::testing::ValuesIn(all_pairs), name_of);

@@ -39,7 +39,7 @@ TEST_P(Conformance, DeliversTheLargestSampleOfATopic) {
   msg::ChainView view;
   view.module_id = 3;
   for (std::uint32_t k = 0; k < 16; ++k) view.members.push_back(k);
-  for (std::uint32_t k = 0; k < 15; ++k) view.links.push_back({k, 0, k + 1, 1});
+  for (std::uint32_t k = 0; k < 32; ++k) view.links.push_back({k / 2, k % 2, k / 2 + 1, 2 + k % 2});
   EXPECT_TRUE(writer.write(view));
   const auto got = take_count(reader, 1);
   ASSERT_EQ(got.size(), 1u);

@@ -1,35 +1,14 @@
 // Peers that die and return, and what a wrong vendor, plugin or interface is answered with.
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 
+#include "tests/conformance/peer_process.hpp"
 #include "tests/conformance/ring.hpp"
 
 namespace eciton::bus::conformance {
 namespace {
-
-/// A process that is killed without notice.
-class PeerProcess {
- public:
-  PeerProcess(const std::string& vendor, int incarnation) {
-    std::string words[] = {ECITON_CONFORMANCE_PEER, vendor, std::to_string(test_domain()),
-                           std::to_string(incarnation)};
-    char* arguments[] = {words[0].data(), words[1].data(), words[2].data(), words[3].data(), nullptr};
-    EXPECT_EQ(::posix_spawn(&pid_, words[0].c_str(), nullptr, nullptr, arguments, environ), 0) << words[0];
-  }
-  ~PeerProcess() {
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
-  }
-
- private:
-  pid_t pid_ = 0;
-};
 
 /// sim_network has no processes: its peer's participant is destroyed.
 class PeerParticipant {
@@ -119,7 +98,7 @@ TEST(PluginErrorTest, APluginOfAnotherAbiIsRefused) {
   const PluginPath path(ECITON_BAD_PLUGINS);
   EXPECT_EQ(refusal(config_of("wrong_abi")),
             "DDS plugin " ECITON_BAD_PLUGINS
-            "/libeciton_dds_wrong_abi.so has ABI version 999, this program needs 1: install the plugin of the same "
+            "/libeciton_dds_wrong_abi.so has ABI version 999, this program needs 2: install the plugin of the same "
             "Eciton release");
 }
 

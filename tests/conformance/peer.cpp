@@ -1,5 +1,5 @@
-// The peer that dies: writes its claim once and its state at 100 Hz until it is killed.
-// peer VENDOR DOMAIN INCARNATION
+// The peer that dies: writes its claim once and its state every PERIOD_US until it is killed.
+// peer VENDOR DOMAIN INCARNATION PERIOD_US
 #include <cstdio>
 #include <cstdlib>
 
@@ -7,8 +7,8 @@
 
 int main(int argc, char** argv) {
   using namespace eciton;
-  if (argc != 4) {
-    std::fprintf(stderr, "usage: %s VENDOR DOMAIN INCARNATION\n", argv[0]);
+  if (argc != 5) {
+    std::fprintf(stderr, "usage: %s VENDOR DOMAIN INCARNATION PERIOD_US\n", argv[0]);
     return 2;
   }
   auto config = bus::conformance::config_of(argv[1], static_cast<std::uint32_t>(std::atoi(argv[2])),
@@ -20,9 +20,11 @@ int main(int argc, char** argv) {
     auto claim = bus::conformance::claim(7, 0, 1);
     claim.incarnation = std::strtoull(argv[3], nullptr, 10);
     claims.write(claim);
-    for (int k = 0; k < 6000; ++k) {  // a minute at most, should nobody kill it
+    const auto period = std::chrono::microseconds(std::atoi(argv[4]));
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);  // should nobody kill it
+    for (std::int64_t k = 0; std::chrono::steady_clock::now() < end; ++k) {
       states.write(bus::conformance::state_at(7, k));
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      std::this_thread::sleep_for(period);
     }
   } catch (const BadInput& bad) {
     std::fprintf(stderr, "%s\n", bad.error.message.c_str());

@@ -141,16 +141,18 @@ const Refusal refusals[] = {
     Refusal{"TopicAsMember",
             "@final struct T { int64 stamp_ns; };\n@final struct S { int64 stamp_ns;\n  T inner;\n};", 4,
             "struct bad::S, member inner: T is a topic of its own; only a @nested struct may be a member"},
-    Refusal{"StringKey", "@final struct S { int64 stamp_ns;\n  @key string<7> who;\n};", 3,
+    Refusal{"StringKey", "@final struct S {\n  @key string<7> who; int64 stamp_ns;\n};", 3,
             "struct bad::S, member who: a bounded string as key; use an integer or an enum"},
-    Refusal{"StructKey", "@nested @final struct N { long x; };\n@final struct S { int64 stamp_ns;\n  @key N who;\n};",
+    Refusal{"StructKey", "@nested @final struct N { long x; };\n@final struct S {\n  @key N who; int64 stamp_ns;\n};",
             4, "struct bad::S, member who: a struct as key"},
     Refusal{"KeyInNestedStruct", "@nested @final struct N {\n  @key long x; };", 3,
             "struct bad::N, member x: a key in a @nested struct; keys stand in the topic itself"},
-    Refusal{"LongKey", "@final struct S { int64 stamp_ns; @key int64 a; @key int64 b;\n  @key octet c;\n};", 3,
+    Refusal{"KeyBehindAnotherMember", "@final struct S { @key int32 a; int64 stamp_ns;\n  @key int32 b;\n};", 3,
+            "struct bad::S, member b: a key behind members that are none; keys come first"},
+    Refusal{"LongKey", "@final struct S { @key int64 a; @key int64 b;\n  @key octet c; int64 stamp_ns;\n};", 3,
             "struct bad::S, member c: makes the key longer than 16 bytes"},
     Refusal{"LongKeyByAlignment",
-            "@final struct S { int64 stamp_ns; @key octet a; @key int64 b;\n  @key int32 c;\n};", 3,
+            "@final struct S { @key octet a; @key int64 b;\n  @key int32 c; int64 stamp_ns;\n};", 3,
             "struct bad::S, member c: makes the key longer than 16 bytes"},
     Refusal{"TooLarge",
             "@nested @final struct N { string<1000> t[1000]; };\n@final struct S { int64 stamp_ns; sequence<N, "
@@ -177,7 +179,7 @@ TEST(GeneratorTest, AcceptsWhatTheRefusalsAskForInstead) {
   const fs::path directory = fresh_directory("accepted");
   write_file(directory / "case.idl",
              "module good {\n@nested @final struct N { sequence<long, 2> row; };\n"
-             "@final struct S { int64 stamp_ns; @key int64 a; @key int32 b; @key octet c; string<7> who;\n"
+             "@final struct S { @key int64 a; @key int32 b; @key octet c; int64 stamp_ns; string<7> who;\n"
              "  sequence<N, 2> rows; double R[9]; };\n};\n");
   const Outcome outcome = generate(directory / "case.idl", directory);
   EXPECT_EQ(outcome.status, 0) << outcome.output;

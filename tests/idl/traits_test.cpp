@@ -65,12 +65,12 @@ TEST(TypeTraitsTest, AlignsEachElementOfASequenceOfStructs) {
 }
 
 TEST(TypeTraitsTest, ComputesTheSizeOfEveryKindOfMember) {
-  // flag 0, key_a 2-4, letter 4, key_b 5, raw 6, tiny 7, u16 8-10, i32 12-16, u32 16-20-24, i64 24-32, u64 32-40,
-  // single 40-44, stamp 48-56, key_c 56-64, word 64-68, mode 68-72, vector 72-96, inners: count 96-100, first 100,
-  // second 104-112, text 112-122; 122, 128-136, 136-146; pair: 146, 152-160, 160-170; 170, 176-184, 184-194;
-  // texts 196-204-212; words: count 212-216, 216-223, 224-231, 232-239; keywords: count 240-244, to 256; bytes:
-  // 256-260, to 265; numbers: count 268-272, to 288; last 288-289. With the header 293, padded to 296.
-  EXPECT_EQ(TypeTraits<EveryKind>::size_max, 296U);
+  // key_a 0-2, key_b 2, key_c 8-16, flag 16, letter 17, raw 18, tiny 19, u16 20-22, i32 24-28, u32 28-32-36, i64
+  // 40-48, u64 48-56, single 56-60, stamp 64-72, word 72-76, mode 76-80, vector 80-104, inners: count 104-108, first
+  // 108, second 112-120, text 120-130; 130, 136-144, 144-154; pair: 154, 160-168, 168-178; 178, 184-192, 192-202;
+  // texts 204-212-220; words: count 220-224, 224-231, 232-239, 240-247; keywords: count 248-252, to 264; bytes:
+  // 264-268, to 273; numbers: count 276-280, to 296; last 296-297. With the header 301, padded to 304.
+  EXPECT_EQ(TypeTraits<EveryKind>::size_max, 304U);
 }
 
 TEST(TypeTraitsTest, ComputesTheSizeOfTheKeyAlone) {

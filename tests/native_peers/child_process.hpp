@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -33,6 +34,7 @@ class ChildProcess {
     arguments.push_back(nullptr);
     pid_ = fork();
     if (pid_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGTERM);  // a test that is killed leaves nobody behind
       dup2(input[0], STDIN_FILENO);
       dup2(output[1], STDOUT_FILENO);
       execv(arguments[0], arguments.data());
@@ -57,6 +59,10 @@ class ChildProcess {
   void close_input() {
     if (input_ >= 0) close(input_);
     input_ = -1;
+  }
+  pid_t pid() const { return pid_; }
+  void send(int signal) {
+    if (running()) kill(pid_, signal);
   }
   bool running() {
     read_output();

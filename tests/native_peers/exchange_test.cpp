@@ -72,6 +72,18 @@ std::vector<std::unique_ptr<OurChannel>> channels(bus::Participant& participant)
   return all;
 }
 
+/// Whether Fast DDS left a file in shared memory for this process: names have its number, low byte first.
+bool left_shared_memory(pid_t pid) {
+  std::array<char, 16> bytes{};
+  std::snprintf(bytes.data(), bytes.size(), ".%02x.%02x.", static_cast<unsigned>(pid) & 0xffu,
+                static_cast<unsigned>(pid) >> 8 & 0xffu);
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("fast") && name.substr(0, 40).find(bytes.data()) != std::string::npos) return true;
+  }
+  return false;
+}
+
 class ExchangeTest : public testing::TestWithParam<std::tuple<const char*, const char*>> {
  protected:
   static std::string peer() {
@@ -105,6 +117,7 @@ TEST_P(ExchangeTest, ANativeWriterReachesOurReaderOnEveryTopic) {
   native.close_input();
   EXPECT_TRUE(native.wait_until_end(std::chrono::seconds(5)));
   EXPECT_EQ(native.exit_status(), 0) << native.output();
+  EXPECT_FALSE(left_shared_memory(native.pid()));
 }
 
 TEST_P(ExchangeTest, OurWriterReachesANativeReaderOnEveryTopic) {
@@ -120,6 +133,7 @@ TEST_P(ExchangeTest, OurWriterReachesANativeReaderOnEveryTopic) {
   native.close_input();
   EXPECT_TRUE(native.wait_until_end(std::chrono::seconds(5)));
   EXPECT_EQ(native.exit_status(), 0) << native.output();
+  EXPECT_FALSE(left_shared_memory(native.pid()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, ExchangeTest,

@@ -105,6 +105,9 @@ class FastChannel final : public Channel {
     qos.durability().kind =
         qos_.transient_local ? fast::TRANSIENT_LOCAL_DURABILITY_QOS : fast::VOLATILE_DURABILITY_QOS;
     qos.history().depth = qos_.depth;
+    // By default types of fixed size and without a key would go through files in /dev/shm, which who is killed
+    // leaves.
+    qos.data_sharing().off();
   }
   fast::Topic* topic_description() {
     support_.register_type(node_.participant);

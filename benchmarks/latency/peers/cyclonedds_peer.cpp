@@ -126,17 +126,15 @@ class CycloneTransport final : public Transport {
   dds_entity_t entity() const { return participant_->participant.get(); }
 
   template <class Payload>
-  Lane lane(const dds_topic_descriptor_t& type, int bytes) {
-    const auto topic = [&](const char* name) {
-      return good(dds_create_topic(entity(), &type, (name + std::to_string(bytes)).c_str(), nullptr, nullptr), "topic");
+  Lane lane(const dds_topic_descriptor_t& type, std::uint32_t bytes) {
+    const auto topic = [&](Role writer) {
+      const std::string name = topic_name(options_, writer, bytes);
+      return good(dds_create_topic(entity(), &type, name.c_str(), nullptr, nullptr), "topic");
     };
-    const bool pings = options_.role == Role::ping;
     const Qos qos = make_qos(options_);
     Lane made;
-    made.writer = good(dds_create_writer(entity(), topic(pings ? "bench_ping_" : "bench_echo_"), qos.get(), nullptr),
-                       "writer");
-    made.reader = good(dds_create_reader(entity(), topic(pings ? "bench_echo_" : "bench_ping_"), qos.get(), nullptr),
-                       "reader");
+    made.writer = good(dds_create_writer(entity(), topic(options_.role), qos.get(), nullptr), "writer");
+    made.reader = good(dds_create_reader(entity(), topic(other(options_.role)), qos.get(), nullptr), "reader");
     made.send = &send_payload<Payload>;
     made.take = &take_payloads<Payload>;
     return made;

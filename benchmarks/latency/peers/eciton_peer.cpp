@@ -1,7 +1,9 @@
-// Ours: a participant, writers and readers of the framework, waiting as the real-time executor does.
+// Ours: a participant, writers and readers of the framework. wake: waiting as the real-time executor does. inline: the
+// readers that call back in the vendor's thread.
 #include "benchmarks/idl/payload.hpp"
 #include "benchmarks/latency/peers/transport.hpp"
 #include "core/base/wall_clock.hpp"
+#include "core/bus/inline_reader.hpp"
 #include "core/bus/participant.hpp"
 #include "core/runtime/sleeper.hpp"
 
@@ -16,51 +18,60 @@ class Lane {
   virtual ~Lane() = default;
   virtual bool matched() const = 0;
   virtual bool send(const Mark& mark) noexcept = 0;
-  virtual void take(Sink& sink) noexcept = 0;
+  virtual void take() noexcept = 0;
 };
 
 template <class Payload>
 class LaneOf final : public Lane {
  public:
-  LaneOf(bus::Participant& participant, const PeerOptions& options)
-      : writer_(participant.create_writer(topic(options, options.role == Role::ping))),
-        reader_(participant.create_reader(topic(options, options.role == Role::echo))) {
+  LaneOf(bus::Participant& participant, const PeerOptions& options, Sink& sink)
+      : sink_(sink), writer_(participant.create_writer(topic(topic_name(options, options.role, bytes), options))) {
     sample_.module_id = 1;
     fill(sample_.values);
+    const std::string name = topic_name(options, other(options.role), bytes);
+    if (options.delivery == Delivery::wake) {
+      reader_.emplace(participant.create_reader(topic(name, options)));
+    } else {
+      inline_reader_.emplace(participant.create_inline_reader(topic(name, options), &LaneOf::on_sample, this));
+    }
   }
 
-  bool matched() const override { return writer_.matched() > 0 && reader_.matched() > 0; }
+  bool matched() const override {
+    return writer_.matched() > 0 && (reader_ ? reader_->matched() : inline_reader_->matched()) > 0;
+  }
   bool send(const Mark& mark) noexcept override {
     sample_.number = mark.sequence;
     sample_.stamp_ns = mark.stamp_ns;
     return writer_.write(sample_);
   }
-  void take(Sink& sink) noexcept override {
-    while (const auto sample = reader_.take()) {
-      sink.arrived({sample->value.number, sample->value.stamp_ns}, is_filled(sample->value.values));
-    }
+  void take() noexcept override {
+    while (const auto sample = reader_->take()) on_sample(this, sample->value);
   }
 
  private:
-  static bus::Topic<Payload> topic(const PeerOptions& options, bool pings) {
-    static const std::string names[2] = {"bench_echo_" + std::to_string(16 + sizeof(Payload::values)),
-                                         "bench_ping_" + std::to_string(16 + sizeof(Payload::values))};
-    return {names[pings], options.reliable ? QosClass::command : QosClass::sensor, bus::Scope::module};
+  static bus::Topic<Payload> topic(const std::string& name, const PeerOptions& options) {
+    return {name, options.reliable ? QosClass::command : QosClass::sensor, bus::Scope::module};
   }
+  static void on_sample(void* self, const Payload& sample) {
+    static_cast<LaneOf*>(self)->sink_.arrived({sample.number, sample.stamp_ns}, is_filled(sample.values));
+  }
+  static constexpr std::uint32_t bytes = 16 + sizeof(Payload::values);
 
+  Sink& sink_;
   Payload sample_{};
   bus::Writer<Payload> writer_;
-  bus::Reader<Payload> reader_;
+  std::optional<bus::Reader<Payload>> reader_;
+  std::optional<bus::InlineReader<Payload>> inline_reader_;
 };
 
 class EcitonTransport final : public Transport {
  public:
   EcitonTransport(const PeerOptions& options, Sink& sink)
-      : sink_(sink), participant_(config(options)), sleeper_(participant_.waker(), never_) {
-    lanes_[0] = std::make_unique<LaneOf<Payload64>>(participant_, options);
-    lanes_[1] = std::make_unique<LaneOf<Payload256>>(participant_, options);
-    lanes_[2] = std::make_unique<LaneOf<Payload1024>>(participant_, options);
-    lanes_[3] = std::make_unique<LaneOf<Payload4096>>(participant_, options);
+      : participant_(config(options)), sleeper_(participant_.waker(), never_) {
+    lanes_[0] = std::make_unique<LaneOf<Payload64>>(participant_, options, sink);
+    lanes_[1] = std::make_unique<LaneOf<Payload256>>(participant_, options, sink);
+    lanes_[2] = std::make_unique<LaneOf<Payload1024>>(participant_, options, sink);
+    lanes_[3] = std::make_unique<LaneOf<Payload4096>>(participant_, options, sink);
     lane_ = lanes_[0].get();
   }
 
@@ -75,7 +86,7 @@ class EcitonTransport final : public Transport {
   void wait_until(std::int64_t monotonic_ns) noexcept override {
     sleeper_.until(Duration{monotonic_ns});
     participant_.set_now(wall_now());
-    lane_->take(sink_);
+    lane_->take();
   }
   void interrupt() noexcept override { participant_.waker().signal(); }
 
@@ -88,7 +99,6 @@ class EcitonTransport final : public Transport {
             .peers = options.peers};
   }
 
-  Sink& sink_;
   bus::Participant participant_;
   runtime::StopFlag never_;
   runtime::Sleeper sleeper_;

@@ -60,16 +60,15 @@ class Lane : public fast::DataReaderListener {
 template <class Payload, class PayloadPubSubType>
 class LaneOf final : public Lane {
  public:
-  LaneOf(eciton_participant& in, const PeerOptions& options, int bytes, Sink& sink) : sink_(sink) {
+  LaneOf(eciton_participant& in, const PeerOptions& options, std::uint32_t bytes, Sink& sink) : sink_(sink) {
     fast::TypeSupport type(new PayloadPubSubType);
     type.register_type(in.participant);
-    const auto topic = [&](const char* name) {
-      return in.participant->create_topic(name + std::to_string(bytes), type.get_type_name(), fast::TopicQos());
+    const auto topic = [&](Role of) {
+      return in.participant->create_topic(topic_name(options, of, bytes), type.get_type_name(), fast::TopicQos());
     };
-    const bool pings = options.role == Role::ping;
     const bool listens = options.delivery == Delivery::inlined;
-    writer = in.publisher->create_datawriter(topic(pings ? "bench_ping_" : "bench_echo_"), writer_qos(options));
-    reader = in.subscriber->create_datareader(topic(pings ? "bench_echo_" : "bench_ping_"), reader_qos(options),
+    writer = in.publisher->create_datawriter(topic(options.role), writer_qos(options));
+    reader = in.subscriber->create_datareader(topic(other(options.role)), reader_qos(options),
                                               listens ? this : nullptr,
                                               listens ? fast::StatusMask::data_available() : fast::StatusMask::none());
     if (writer == nullptr || reader == nullptr) throw BadInput{{"Fast DDS cannot create a writer and a reader"}};

@@ -12,7 +12,7 @@ namespace {
 
 class LcmTransport final : public Transport {
  public:
-  LcmTransport(const PeerOptions& options, Sink& sink) : sink_(sink), pings_(options.role == Role::ping) {
+  LcmTransport(const PeerOptions& options, Sink& sink) : sink_(sink), own_(options.run + (options.role == Role::ping ? "_ping" : "_echo")) {
     const std::string url =
         "udpm://239.255.76.67:" + std::to_string(17'000 + options.domain) + "?ttl=1&recv_buf_size=1048576";
     lcm_ = ::lcm_create(url.c_str());
@@ -20,7 +20,8 @@ class LcmTransport final : public Transport {
       throw BadInput{{"LCM cannot open " + url + ": it wants a route for multicast ('ip route add 224.0.0.0/4 dev " +
                       options.network_interface + "')"}};
     }
-    ::lcm_subscribe(lcm_, pings_ ? "bench_echo" : "bench_ping", &LcmTransport::on_message, this);
+    const std::string others = options.run + (options.role == Role::ping ? "_echo" : "_ping");
+    ::lcm_subscribe(lcm_, others.c_str(), &LcmTransport::on_message, this);
     std::thread([this] {
       while (::lcm_handle(lcm_) == 0) {
       }
@@ -30,8 +31,7 @@ class LcmTransport final : public Transport {
   void select(std::uint32_t bytes) override { out_.resize(bytes); }
   bool send(const Mark& mark) noexcept override {
     const auto bytes = out_.with(mark);
-    return ::lcm_publish(lcm_, pings_ ? "bench_ping" : "bench_echo", bytes.data(),
-                         static_cast<unsigned>(bytes.size())) == 0;
+    return ::lcm_publish(lcm_, own_.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) == 0;
   }
 
  private:
@@ -41,7 +41,7 @@ class LcmTransport final : public Transport {
   }
 
   Sink& sink_;
-  bool pings_;
+  std::string own_;
   lcm_t* lcm_ = nullptr;
   RawPayload out_;
 };

@@ -7,8 +7,6 @@
 //   quit                                                    nothing
 // First of all it says "ready ADDRESS" or "error MESSAGE". It ends when standard input does.
 #include <poll.h>
-#include <sched.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -196,10 +194,9 @@ PeerOptions parse(int argc, char** argv) {
   app.add_flag("--reliable", options.reliable);
   app.add_option("--dds", options.vendor);
   app.add_option("--domain", options.domain);
+  app.add_option("--run", options.run);
   app.add_option("--interface", options.network_interface);
   app.add_option("--peer", options.peers)->allow_extra_args(false);
-  app.add_option("--cpu", options.cpu);
-  app.add_option("--priority", options.priority);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {
@@ -210,23 +207,10 @@ PeerOptions parse(int argc, char** argv) {
   return options;
 }
 
-/// Before the first thread is made: all inherit it.
-void settle(const PeerOptions& options) {
+/// Processor and policy are set by who starts us, alike for all programs.
+void settle() {
   std::signal(SIGINT, SIG_IGN);  // of the terminal: the benchmark ends us by closing our input
   std::signal(SIGPIPE, SIG_IGN);
-  ::prctl(PR_SET_TIMERSLACK, 1UL);
-  if (options.cpu >= 0) {
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(static_cast<std::size_t>(options.cpu), &one);
-    if (::sched_setaffinity(0, sizeof one, &one) != 0)
-      throw BadInput{{"there is no processor " + std::to_string(options.cpu) + " for this process"}};
-  }
-  const sched_param parameters{.sched_priority = options.priority};
-  if (options.priority > 0 && ::sched_setscheduler(0, SCHED_FIFO, &parameters) != 0) {
-    throw BadInput{{"no SCHED_FIFO at priority " + std::to_string(options.priority) +
-                    ": it takes CAP_SYS_NICE and 1 to 99"}};
-  }
 }
 
 /// Standard output is the answers'; what libraries print there goes to standard error.
@@ -243,7 +227,7 @@ int peer_main(int argc, char** argv, MakeTransport make) {
   std::string error;
   try {
     const PeerOptions options = parse(argc, argv);
-    settle(options);
+    settle();
     // Not destroyed: vendors take up to a second to say good-bye, and the reading thread uses it.
     auto* peer = new Peer(options, make, file);
     peer->serve();

@@ -39,10 +39,9 @@ struct PeerOptions {
   bool reliable = false;  // QoS class command instead of sensor
   std::string vendor = "cyclonedds";
   std::uint32_t domain = 0;
+  std::string run = "bench";  // how this run's topics begin, so that two runs do not hear each other
   std::string network_interface = "lo";
   std::vector<std::string> peers{};  // none: discovery by multicast
-  int cpu = -1;                      // every thread of the process on this one; -1: wherever
-  int priority = 0;                  // SCHED_FIFO, of every thread of the process; 0: SCHED_OTHER
 };
 
 class Transport {
@@ -76,6 +75,12 @@ bool is_filled(const Values& values) {
   const std::size_t size = sizeof values / sizeof(double);
   return values[0] == 0.5 && values[size - 1] == static_cast<double>(size) - 0.5;
 }
+
+/// "bench7_ping_256": what one role writes and the other reads.
+inline std::string topic_name(const PeerOptions& options, Role writer, std::uint32_t bytes) {
+  return options.run + (writer == Role::ping ? "_ping_" : "_echo_") + std::to_string(bytes);
+}
+inline Role other(Role role) { return role == Role::ping ? Role::echo : Role::ping; }
 
 using MakeTransport = std::unique_ptr<Transport> (*)(const PeerOptions& options, Sink& sink);
 

@@ -68,11 +68,30 @@ bool equal_keys(const ddsi_serdata* a, const ddsi_serdata* b) {
 
 std::uint32_t size_of(const ddsi_serdata* serdata) { return as_bytes(serdata)->size; }
 
+/// The vendor keeps this to itself, but its packets are there: by RTPS, the header has the participant's part of the
+/// GUID at byte 8, and a DATA or DATA_FRAG submessage the writer's at byte 12 and its number at 16, high half first.
+Origin origin_of(const nn_rdata* fragment) {
+  Origin origin;
+  if (NN_RDATA_SUBMSG_OFF(fragment) == 0) return origin;
+  const unsigned char* packet = NN_RMSG_PAYLOAD(fragment->rmsg);
+  const unsigned char* submessage = NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_SUBMSG_OFF(fragment));
+  const bool little_endian = (submessage[1] & 1) != 0;
+  std::memcpy(origin.writer.data(), packet + 8, 12);
+  std::memcpy(origin.writer.data() + 12, submessage + 12, 4);
+  std::uint64_t number = 0;
+  for (const unsigned half : {16u, 20u}) {
+    for (unsigned k = 0; k < 4; ++k) number = number << 8 | submessage[half + (little_endian ? 3 - k : k)];
+  }
+  origin.number = static_cast<std::int64_t>(number);
+  return origin;
+}
+
 ddsi_serdata* from_fragments(const ddsi_sertype* sertype, ddsi_serdata_kind kind, const nn_rdata* fragment,
                              std::size_t size) {
   if (!fits(sertype, kind, size)) return nullptr;
   BytesSerdata* serdata = new_serdata(sertype, kind, size);
   if (serdata == nullptr) return nullptr;
+  serdata->origin = origin_of(fragment);
   std::uint32_t copied = 0;
   for (; fragment != nullptr; fragment = fragment->nextfrag) {
     if (fragment->maxp1 <= copied) continue;  // fragments may overlap
@@ -144,7 +163,7 @@ void take_back(ddsi_serdata* serdata, const ddsrt_iovec_t*) { ddsi_serdata_unref
 
 bool to_sample(const ddsi_serdata* serdata, void* sample, void**, void*) {
   if (sample == nullptr) return false;
-  *static_cast<Bytes*>(sample) = {as_bytes(serdata)->cdr(), as_bytes(serdata)->size};
+  *static_cast<Bytes*>(sample) = {as_bytes(serdata)->cdr(), as_bytes(serdata)->size, &as_bytes(serdata)->origin};
   return true;
 }
 

@@ -6,13 +6,21 @@
 
 #include "core/bus/plugin.h"
 #include "core/bus/vendors/cyclonedds/vendor.hpp"
+#include "core/bus/vendors/sequence_gaps.hpp"
 
 namespace eciton::bus::cyclonedds {
 
-/// What dds_write is given as a sample.
+/// Who sent a sample, and its number among the writer's; 0: not known, as of a writer in this process.
+struct Origin {
+  vendors::WriterGuid writer{};
+  std::int64_t number = 0;
+};
+
+/// What dds_write is given as a sample, and what a reader's filter is shown.
 struct Bytes {
   const std::uint8_t* cdr = nullptr;
   std::uint32_t size = 0;
+  const Origin* origin = nullptr;
 };
 
 struct BytesSertype : ddsi_sertype {
@@ -22,6 +30,7 @@ struct BytesSertype : ddsi_sertype {
 struct BytesSerdata : ddsi_serdata {
   std::uint32_t size;
   std::uint8_t key_hash[16];
+  Origin origin;
 
   std::uint8_t* cdr() { return reinterpret_cast<std::uint8_t*>(this + 1); }
   const std::uint8_t* cdr() const { return reinterpret_cast<const std::uint8_t*>(this + 1); }

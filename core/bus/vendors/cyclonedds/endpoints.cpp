@@ -1,6 +1,7 @@
 // Writer and reader of Cyclone DDS: one copy of the bytes into the pool at write and one at receipt, none in take.
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <mutex>
 
@@ -126,11 +127,12 @@ std::uint32_t eciton_writer::matched() const {
 }
 
 Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, const char* topic,
-                                             const eciton_type& type, const eciton_qos& qos, eciton_wake wake) {
+                                             const eciton_type& type, const eciton_qos& qos,
+                                             eciton_delivery delivery) {
   if (const eciton::Status checked = eciton::bus::vendors::check_endpoint(topic, type, qos); !checked) {
     return checked.error();
   }
-  std::unique_ptr<eciton_reader> created(new eciton_reader(type, qos.instances_max, wake));
+  std::unique_ptr<eciton_reader> created(new eciton_reader(type, qos, delivery));
   if (!created->memory_.acquire(type, qos)) return cyclonedds::no_memory(participant, topic, qos);
   const Result<dds_entity_t> on = cyclonedds::create_topic(participant, topic, type);
   if (!on) return on.error();
@@ -155,29 +157,54 @@ Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, co
 bool eciton_reader::admit(const void* sample, void* self) {
   auto& reader = *static_cast<eciton_reader*>(self);
   const auto* bytes = static_cast<const cyclonedds::Bytes*>(sample);
+  if (bytes->origin != nullptr) {
+    reader.gaps_.observe(bytes->origin->writer, bytes->origin->number);
+    reader.missing_.store(reader.gaps_.missing(), std::memory_order_relaxed);
+  }
   eciton::bus::vendors::InstanceKey key;
-  return eciton::bus::vendors::key_hash_of(reader.type_, bytes->cdr, bytes->size, false, key.data()) &&
-         reader.keys_.admit(key);
+  const bool good = eciton::bus::vendors::key_hash_of(reader.type_, bytes->cdr, bytes->size, false, key.data()) &&
+                    reader.keys_.admit(key);
+  (good ? reader.admitted_ : reader.rejected_).fetch_add(1, std::memory_order_relaxed);
+  return good;
 }
 
-void eciton_reader::on_data_available(dds_entity_t, void* self) {
-  const eciton_wake& wake = static_cast<eciton_reader*>(self)->wake_;
-  if (wake.signal != nullptr) wake.signal(wake.context);
+// The first call may come before dds_create_reader has returned: hence its own handle.
+void eciton_reader::on_data_available(dds_entity_t handle, void* self) {
+  auto& reader = *static_cast<eciton_reader*>(self);
+  const eciton_delivery& delivery = reader.delivery_;
+  if (delivery.sample != nullptr) {
+    reader.take_from(handle, std::numeric_limits<std::uint32_t>::max(), delivery.sample, delivery.context);
+  } else if (delivery.signal != nullptr) {
+    delivery.signal(delivery.context);
+  }
 }
 
 std::uint32_t eciton_reader::take(std::uint32_t count_max, eciton_sink sink, void* context) {
+  return take_from(reader_.get(), count_max, sink, context);
+}
+
+std::uint32_t eciton_reader::take_from(dds_entity_t reader, std::uint32_t count_max, eciton_sink sink,
+                                       void* context) {
+  // Once nothing is left, what was admitted before and not given has been replaced.
+  const std::uint64_t admitted = admitted_.load(std::memory_order_acquire);
   std::uint32_t given = 0;
   ddsi_serdata* samples[cyclonedds::kTakenAtOnce];
   dds_sample_info_t infos[cyclonedds::kTakenAtOnce];
   while (given < count_max) {
     const std::uint32_t asked = std::min(cyclonedds::kTakenAtOnce, count_max - given);
-    const dds_return_t taken = dds_takecdr(reader_.get(), samples, asked, infos, DDS_ANY_STATE);
-    if (taken <= 0) break;
+    const dds_return_t taken = dds_takecdr(reader, samples, asked, infos, DDS_ANY_STATE);
+    if (taken <= 0) {
+      if (admitted > given_ + replaced_.load(std::memory_order_relaxed)) {
+        replaced_.store(admitted - given_, std::memory_order_relaxed);
+      }
+      break;
+    }
     for (dds_return_t k = 0; k < taken; ++k) {
       const auto* bytes = static_cast<const BytesSerdata*>(samples[k]);
       if (infos[k].valid_data) {  // not: a writer went or disposed; the framework tells by fields and ages
         sink(context, bytes->cdr(), bytes->size);
         ++given;
+        ++given_;
       }
       ddsi_serdata_unref(samples[k]);
     }
@@ -189,4 +216,15 @@ std::uint32_t eciton_reader::matched() const {
   dds_subscription_matched_status_t status{};
   dds_get_subscription_matched_status(reader_.get(), &status);
   return status.current_count;
+}
+
+// Of what does not even have the shape of a sample the vendor makes none: it is not counted here.
+eciton_reader_losses eciton_reader::losses() const {
+  const std::uint64_t missing = missing_.load(std::memory_order_relaxed);
+  // A reliable writer leaves out what was replaced in its history; to a late joiner of one that keeps samples, its
+  // past.
+  const bool superseded = reliable_ && !keeps_past_;
+  return {.lost = reliable_ ? 0 : missing,
+          .rejected = rejected_.load(std::memory_order_relaxed),
+          .replaced = replaced_.load(std::memory_order_relaxed) + (superseded ? missing : 0)};
 }

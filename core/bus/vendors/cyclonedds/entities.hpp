@@ -12,6 +12,7 @@
 #include "core/bus/vendors/cyclonedds/vendor.hpp"
 #include "core/bus/vendors/instance_set.hpp"
 #include "core/bus/vendors/reannouncer.hpp"
+#include "core/bus/vendors/sequence_gaps.hpp"
 
 namespace eciton::bus::cyclonedds {
 
@@ -89,19 +90,31 @@ struct eciton_writer {
 
 struct eciton_reader {
   static eciton::Result<eciton_reader*> create(eciton_participant& participant, const char* topic,
-                                               const eciton_type& type, const eciton_qos& qos, eciton_wake wake);
+                                               const eciton_type& type, const eciton_qos& qos,
+                                               eciton_delivery delivery);
   std::uint32_t take(std::uint32_t count_max, eciton_sink sink, void* context);
   std::uint32_t matched() const;
+  eciton_reader_losses losses() const;
 
  private:
-  eciton_reader(const eciton_type& type, std::uint32_t keys_max, eciton_wake wake)
-      : type_(type), keys_(keys_max), wake_(wake) {}
+  eciton_reader(const eciton_type& type, const eciton_qos& qos, eciton_delivery delivery)
+      : type_(type),
+        reliable_(qos.reliable != 0),
+        keeps_past_(qos.transient_local != 0),
+        keys_(qos.instances_max),
+        delivery_(delivery) {}
+  std::uint32_t take_from(dds_entity_t reader, std::uint32_t count_max, eciton_sink sink, void* context);
   static void on_data_available(dds_entity_t reader, void* self);
   static bool admit(const void* sample, void* self);
 
   eciton_type type_;
-  eciton::bus::vendors::InstanceSet keys_;  // used under the lock of the vendor's history
-  eciton_wake wake_;
+  bool reliable_;
+  bool keeps_past_;
+  eciton::bus::vendors::InstanceSet keys_;   // used under the lock of the vendor's history,
+  eciton::bus::vendors::SequenceGaps gaps_;  // as is this
+  std::atomic<std::uint64_t> missing_{0}, rejected_{0}, admitted_{0}, replaced_{0};
+  std::uint64_t given_ = 0;  // of who takes
+  eciton_delivery delivery_;
   eciton::bus::cyclonedds::Reservation memory_;
   eciton::bus::cyclonedds::Entity topic_;
   eciton::bus::cyclonedds::Entity reader_;  // last: deleted first, and with it the last call of the two above

@@ -11,6 +11,7 @@
 
 #include "core/base/result.hpp"
 #include "core/bus/vendors/fastdds/participant.hpp"
+#include "core/bus/vendors/sequence_gaps.hpp"
 
 namespace eciton::bus::fastdds {
 
@@ -60,25 +61,45 @@ struct eciton_writer final : eprosima::fastdds::dds::DataWriterListener {
 
 struct eciton_reader final : eprosima::fastdds::dds::DataReaderListener {
   static eciton::Result<eciton_reader*> create(eciton_participant& participant, const char* topic,
-                                               const eciton_type& type, const eciton_qos& qos, eciton_wake wake);
+                                               const eciton_type& type, const eciton_qos& qos,
+                                               eciton_delivery delivery);
   ~eciton_reader() override;
 
   std::uint32_t take(std::uint32_t count_max, eciton_sink sink, void* context);
   std::uint32_t matched() const { return matched_.load(std::memory_order_relaxed); }
+  eciton_reader_losses losses() const;
 
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
   void on_subscription_matched(eprosima::fastdds::dds::DataReader* reader,
                                const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override;
+  void on_sample_lost(eprosima::fastdds::dds::DataReader* reader,
+                      const eprosima::fastdds::dds::SampleLostStatus& status) override;
+  void on_sample_rejected(eprosima::fastdds::dds::DataReader* reader,
+                          const eprosima::fastrtps::SampleRejectedStatus& status) override;
 
  private:
-  eciton_reader(eciton_participant& participant, const eciton_type& type, eciton_wake wake)
-      : participant_(participant), type_(type), wake_(wake) {}
+  eciton_reader(eciton_participant& participant, const eciton_type& type, const eciton_qos& qos,
+                eciton_delivery delivery)
+      : participant_(participant),
+        type_(type),
+        reliable_(qos.reliable != 0),
+        keeps_past_(qos.transient_local != 0),
+        delivery_(delivery) {}
+  std::uint32_t take_from(eprosima::fastdds::dds::DataReader& reader, std::uint32_t count_max, eciton_sink sink,
+                          void* context);
   /// Takes up to `count_max` samples on loan and gives the good ones to the sink; 0 taken: nothing is left.
-  std::uint32_t take_some(std::uint32_t count_max, eciton_sink sink, void* context, std::uint32_t& given);
+  std::uint32_t take_some(eprosima::fastdds::dds::DataReader& reader, std::uint32_t count_max, eciton_sink sink,
+                          void* context, std::uint32_t& given);
 
   eciton_participant& participant_;
   eciton_type type_;
-  eciton_wake wake_;
+  bool reliable_;
+  bool keeps_past_;
+  eciton_delivery delivery_;
   std::atomic<std::uint32_t> matched_{0};
+  eciton::bus::vendors::SequenceGaps gaps_;  // of who takes
+  std::atomic<std::uint64_t> missing_{0};    // among the numbers of what was taken
+  std::atomic<std::uint64_t> malformed_{0};
+  std::atomic<std::uint32_t> lost_{0}, rejected_{0};  // as the vendor's own statuses have it
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;
 };

@@ -40,6 +40,7 @@ struct Match {
   std::uint32_t ordered_in_flight = 0;
 
   bool apart() const;  // by the partition as it is now
+  void count_lost() const;
 };
 
 struct Endpoint {
@@ -78,17 +79,23 @@ struct Writer : Endpoint {
 struct Reader : Endpoint {
   /// Two slots more than the queue holds: for the sample being taken and the one that comes in.
   Reader(Participant& owner, std::string_view topic_name, const eciton_type& the_type, const eciton_qos& the_qos,
-         eciton_wake the_wake)
+         eciton_delivery the_delivery)
       : Endpoint(owner, topic_name, the_type, the_qos, the_qos.depth * the_qos.instances_max + 2),
-        wake(the_wake),
+        delivery(the_delivery),
         queue(the_qos.depth, the_qos.instances_max) {}
 
-  eciton_wake wake;
+  eciton_delivery delivery;
   KeepLast queue;
   std::vector<Match*> matches;
+  eciton_reader_losses losses{};
+  bool awaits_delivery = false;  // has samples that are to be given to it at once
 };
 
 inline bool Match::apart() const { return writer->participant.group != reader->participant.group; }
+inline void Match::count_lost() const {
+  ++link->statistics.lost;
+  ++reader->losses.lost;
+}
 
 /// A sample on its way; in the heap by (due_ns, order).
 struct Flight {

@@ -60,7 +60,7 @@ template <class Gone>
 void Medium::drop_flights(Gone&& gone) {
   const auto drop = [&gone](const Flight& flight) {
     if (!gone(*flight.match)) return false;
-    if (!flight.match->reliable) ++flight.match->link->statistics.lost;
+    if (!flight.match->reliable) flight.match->count_lost();
     if (flight.ordered) --flight.match->ordered_in_flight;
     flight.match->writer->pool.release(flight.slot);
     return true;
@@ -69,7 +69,7 @@ void Medium::drop_flights(Gone&& gone) {
 }
 
 void Medium::partition(const std::vector<std::vector<std::string>>& groups) {
-  const std::scoped_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
   groups_.clear();
   for (std::uint32_t k = 0; k < groups.size(); ++k)
     for (const auto& name : groups[k]) groups_[name] = k + 1;
@@ -82,6 +82,7 @@ void Medium::partition(const std::vector<std::vector<std::string>>& groups) {
       match->cut = match->apart();
       if (!match->cut && match->reliable) send_history(*match);
     }
+  deliver_inline(lock);
 }
 
 std::uint32_t Medium::group_of(const std::string& name) const {
@@ -132,12 +133,14 @@ Writer* Medium::create_writer(Participant& participant, std::string_view topic, 
 }
 
 Reader* Medium::create_reader(Participant& participant, std::string_view topic, const eciton_type& type,
-                              const eciton_qos& qos, eciton_wake wake, std::string& error) {
-  const std::scoped_lock lock(mutex_);
+                              const eciton_qos& qos, eciton_delivery delivery, std::string& error) {
+  std::unique_lock lock(mutex_);
   error = refusal("reader", participant, topic, type, qos);
   if (!error.empty()) return nullptr;
-  Reader& reader = *readers_.emplace_back(std::make_unique<Reader>(participant, topic, type, qos, wake));
+  Reader& reader = *readers_.emplace_back(std::make_unique<Reader>(participant, topic, type, qos, delivery));
+  awaiting_.reserve(readers_.size());
   for (auto& writer : writers_) match_if_fitting(*writer, reader);
+  deliver_inline(lock);
   return &reader;
 }
 
@@ -175,7 +178,9 @@ void Medium::destroy(Writer& writer) {
 }
 
 void Medium::destroy(Reader& reader) {
-  const std::scoped_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
+  std::erase(awaiting_, &reader);
+  served_changed_.wait(lock, [&] { return served_ != &reader; });
   drop_flights([&reader](const Match& match) { return match.reader == &reader; });
   matches_ -= reader.matches.size();
   for (Match* match : reader.matches)
@@ -191,6 +196,11 @@ std::uint32_t Medium::matched(const Writer& writer) const {
 std::uint32_t Medium::matched(const Reader& reader) const {
   const std::scoped_lock lock(mutex_);
   return static_cast<std::uint32_t>(reader.matches.size());
+}
+
+eciton_reader_losses Medium::losses(const Reader& reader) const {
+  const std::scoped_lock lock(mutex_);
+  return reader.losses;
 }
 
 bool Medium::in_use() const {

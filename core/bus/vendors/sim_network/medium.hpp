@@ -46,13 +46,14 @@ class Medium {
   Writer* create_writer(Participant& participant, std::string_view topic, const eciton_type& type,
                         const eciton_qos& qos, std::string& error);
   Reader* create_reader(Participant& participant, std::string_view topic, const eciton_type& type,
-                        const eciton_qos& qos, eciton_wake wake, std::string& error);
+                        const eciton_qos& qos, eciton_delivery delivery, std::string& error);
   void destroy(Writer& writer);
   void destroy(Reader& reader);
   bool write(Writer& writer, std::span<const std::uint8_t> cdr);
   std::uint32_t take(Reader& reader, std::uint32_t count_max, eciton_sink sink, void* context);
   std::uint32_t matched(const Writer& writer) const;
   std::uint32_t matched(const Reader& reader) const;
+  eciton_reader_losses losses(const Reader& reader) const;
 
  private:
   /// The bound on samples in flight grows with the network, up to a million.
@@ -86,9 +87,10 @@ class Medium {
   void send_history(Match& match);
   void launch(Outgoing& outgoing, Flight flight);
   void land(const Flight& flight);
-  void land_all_due(std::int64_t now);
+  void land_all_due(std::int64_t now, std::unique_lock<std::mutex>& lock);
   void deliver(Match& match, const Outgoing& sample, bool duplicate);
   bool remember(Outgoing& outgoing);
+  void deliver_inline(std::unique_lock<std::mutex>& lock);
 
   mutable std::mutex mutex_;
   const std::uint32_t domain_;
@@ -107,6 +109,10 @@ class Medium {
   std::uint64_t order_ = 0;
   std::uint64_t mismatched_ = 0;
   std::uint64_t writes_refused_ = 0;
+
+  std::vector<Reader*> awaiting_;  // readers that await_delivery; room for all
+  Reader* served_ = nullptr;       // is being given samples, unlocked, by one thread for all
+  std::condition_variable served_changed_;
 
   std::condition_variable sooner_;  // a flight became due before all others, or the end
   bool ending_ = false;

@@ -25,7 +25,7 @@ bool Medium::write(Writer& writer, std::span<const std::uint8_t> cdr) {
       cdr.size() >= 4 && cdr.size() <= writer.type.size_max && cdr[0] == 0 && cdr[1] <= 1 &&
       (writer.type.key_size == 0 ||
        writer.type.key_hash(cdr.data(), static_cast<std::uint32_t>(cdr.size()), 0, key.data()) != 0);
-  const std::scoped_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
   Outgoing outgoing{.writer = writer, .cdr = cdr, .key = key, .sequence = writer.sequence + 1};
   if (!well_formed || (writer.history && !remember(outgoing))) {
     ++writes_refused_;
@@ -34,6 +34,7 @@ bool Medium::write(Writer& writer, std::span<const std::uint8_t> cdr) {
   ++writer.sequence;
   for (const auto& match : writer.matches) send(*match, outgoing);
   if (outgoing.slot != SamplePool::none) writer.pool.release(outgoing.slot);
+  deliver_inline(lock);
   return true;
 }
 
@@ -73,14 +74,14 @@ void Medium::send(Match& match, Outgoing& outgoing) {
   if (match.cut && match.reliable) return;  // waits in the history
   ++count.sent;
   if (match.cut) {
-    ++count.lost;
+    match.count_lost();
     return;
   }
   match.next_sequence = outgoing.sequence + 1;
   const Fate fate = decide(quality_of(*match.link), match.reliable, match.link->random);
   count.retransmitted += fate.attempts - 1;
   if (fate.lost) {
-    ++count.lost;
+    match.count_lost();
     return;
   }
   const std::int64_t now = now_ns();
@@ -117,6 +118,7 @@ void Medium::launch(Outgoing& outgoing, Flight flight) {
     outgoing.slot = pool.acquire(outgoing.cdr, outgoing.key, outgoing.sequence);
   if (flights_.size() >= flights_max_ || outgoing.slot == SamplePool::none) {
     ++match.link->statistics.dropped;
+    ++match.reader->losses.rejected;
     return;
   }
   pool.retain(outgoing.slot);
@@ -135,6 +137,7 @@ void Medium::land(const Flight& flight) {
   const auto& sample = writer.pool[flight.slot];
   if (match.reliable && flight.attempt_ns > sample.evicted_ns) {
     ++match.link->statistics.superseded;
+    ++match.reader->losses.replaced;
   } else {
     deliver(match, {writer, writer.pool.bytes(flight.slot), sample.key, sample.sequence, flight.slot},
             flight.duplicate);
@@ -142,13 +145,14 @@ void Medium::land(const Flight& flight) {
   writer.pool.release(flight.slot);
 }
 
-void Medium::land_all_due(std::int64_t now) {
+void Medium::land_all_due(std::int64_t now, std::unique_lock<std::mutex>& lock) {
   while (!flights_.empty() && flights_.front().due_ns <= now) {
     std::pop_heap(flights_.begin(), flights_.end(), later);
     const Flight flight = flights_.back();
     flights_.pop_back();
     virtual_now_ns_ = std::max(virtual_now_ns_, flight.due_ns);
     land(flight);
+    deliver_inline(lock);
   }
 }
 
@@ -159,26 +163,52 @@ void Medium::deliver(Match& match, const Outgoing& sample, bool duplicate) {
   if (late && !duplicate) ++count.reordered;
   if (late && reader.queue.full(sample.key)) {  // it must not push out a later one
     ++count.replaced;
+    ++reader.losses.replaced;
     return;
   }
   match.last_delivered = std::max(match.last_delivered, sample.sequence);
   const std::uint32_t slot = reader.pool.acquire(sample.cdr, sample.key, sample.sequence);
   if (slot == SamplePool::none) {
     ++count.dropped;
+    ++reader.losses.rejected;
     return;
   }
   const auto [kept, evicted] = reader.queue.insert(sample.key, slot);
   if (!kept) {
     reader.pool.release(slot);
     ++count.dropped;
+    ++reader.losses.rejected;
     return;
   }
   if (evicted != SamplePool::none) {
     reader.pool.release(evicted);
     ++count.replaced;
+    ++reader.losses.replaced;
   }
   ++count.delivered;
-  if (reader.wake.signal) reader.wake.signal(reader.wake.context);
+  if (reader.delivery.sample) {
+    if (!reader.awaits_delivery) awaiting_.push_back(&reader);
+    reader.awaits_delivery = true;
+  } else if (reader.delivery.signal) {
+    reader.delivery.signal(reader.delivery.context);
+  }
+}
+
+/// Gives what came to the readers that want it at once. Unlocked, since they may write: what these writes deliver is
+/// given by the same loop, not by a call within the call.
+void Medium::deliver_inline(std::unique_lock<std::mutex>& lock) {
+  if (served_ != nullptr) return;  // the one who serves looks again
+  while (!awaiting_.empty()) {
+    served_ = awaiting_.back();
+    awaiting_.pop_back();
+    served_->awaits_delivery = false;
+    const eciton_delivery delivery = served_->delivery;
+    lock.unlock();
+    take(*served_, std::numeric_limits<std::uint32_t>::max(), delivery.sample, delivery.context);
+    lock.lock();
+    served_ = nullptr;
+    served_changed_.notify_all();
+  }
 }
 
 std::uint32_t Medium::take(Reader& reader, std::uint32_t count_max, eciton_sink sink, void* context) {
@@ -196,9 +226,9 @@ std::uint32_t Medium::take(Reader& reader, std::uint32_t count_max, eciton_sink 
 }
 
 void Medium::advance(TimePoint now) {
-  const std::scoped_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (pacing_ != Pacing::virtual_time) return;
-  land_all_due(to_ns(now));
+  land_all_due(to_ns(now), lock);
   virtual_now_ns_ = std::max(virtual_now_ns_, to_ns(now));
 }
 
@@ -216,7 +246,7 @@ void Medium::run_thread() {
     } else if (const Steady::time_point due{Duration{flights_.front().due_ns}}; due > Steady::now()) {
       sooner_.wait_until(lock, due);
     } else {
-      land_all_due(now_ns());
+      land_all_due(now_ns(), lock);
     }
   }
 }

@@ -71,10 +71,10 @@ class TestWriter {
 
 class TestReader {
  public:
-  TestReader(eciton_participant* participant, const eciton_type& type, const eciton_qos& qos, eciton_wake wake = {},
-             const char* topic = "t")
-      : handle_(eciton_dds_plugin()->reader_create(participant, topic, &type, &qos, wake, error.data(), error_size)) {
-  }
+  TestReader(eciton_participant* participant, const eciton_type& type, const eciton_qos& qos,
+             eciton_delivery delivery = {}, const char* topic = "t")
+      : handle_(eciton_dds_plugin()->reader_create(participant, topic, &type, &qos, delivery, error.data(),
+                                                   error_size)) {}
   TestReader(TestReader&& other) noexcept : error(other.error), handle_(std::exchange(other.handle_, nullptr)) {}
   ~TestReader() {
     if (handle_) eciton_dds_plugin()->reader_destroy(handle_);
@@ -108,6 +108,11 @@ class TestReader {
     return {count, sum};
   }
   std::uint32_t matched() const { return eciton_dds_plugin()->reader_matched(handle_); }
+  eciton_reader_losses losses() const {
+    eciton_reader_losses losses{};
+    eciton_dds_plugin()->reader_losses(handle_, &losses);
+    return losses;
+  }
 
   std::array<char, error_size> error{};
 

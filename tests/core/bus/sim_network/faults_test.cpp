@@ -92,6 +92,7 @@ TEST_F(VirtualNetwork, BestEffortLosesTheConfiguredShareAndCountsIt) {
   EXPECT_EQ(count.sent, 4000u);
   EXPECT_NEAR(static_cast<double>(count.lost) / 4000, 0.2, 0.03);
   EXPECT_EQ(count.delivered, 4000u - count.lost);
+  EXPECT_EQ(reader.losses().lost, count.lost);
   const Numbers got = reader.take();
   EXPECT_EQ(got.size(), count.delivered);
   EXPECT_TRUE(std::is_sorted(got.begin(), got.end()));
@@ -204,6 +205,7 @@ TEST_F(VirtualNetwork, APartitionLosesBestEffortAndHoldsReliableSamplesUntilHeal
   EXPECT_EQ(state_b.take(), Numbers{});
   EXPECT_EQ(sensor_c.take(), Numbers{3});
   EXPECT_EQ(network().statistics("a", "b").lost, 3u);
+  EXPECT_EQ(sensor_b.losses().lost, 3u);
   network().heal();
   EXPECT_EQ(sensor_b.take(), Numbers{});
   EXPECT_EQ(state_b.take(), (Numbers{13, 23}));

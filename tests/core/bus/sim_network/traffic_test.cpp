@@ -12,8 +12,9 @@ TEST_F(VirtualNetwork, DeliversAtOnceWithoutDelay) {
   TestParticipant a("a"), b("b");
   int wakes = 0;
   TestWriter writer(a, plain_type(), best_effort_deep);
-  TestReader reader(b, plain_type(), best_effort_deep,
-                    {.signal = [](void* context) { ++*static_cast<int*>(context); }, .context = &wakes});
+  TestReader reader(
+      b, plain_type(), best_effort_deep,
+      {.signal = [](void* context) { ++*static_cast<int*>(context); }, .sample = nullptr, .context = &wakes});
   EXPECT_TRUE(writer.write(1));
   EXPECT_TRUE(writer.write(2));
   EXPECT_EQ(wakes, 2);
@@ -75,6 +76,32 @@ TEST_F(VirtualNetwork, KeepsTheLastOfEachKeyInOrderOfArrival) {
   writer.write(11, 1);
   EXPECT_EQ(reader.take(), (Numbers{20, 11}));
   EXPECT_EQ(network().statistics().replaced, 1u);
+  EXPECT_EQ(reader.losses().replaced, 1u);
+}
+
+TEST_F(VirtualNetwork, GivesAnInlineReaderEverySampleWhenItIsDue) {
+  struct Heard {
+    Network& network;
+    std::vector<std::pair<std::uint32_t, bool>> numbers;  // and whether it was the last in flight
+    static void call(void* self, const std::uint8_t* cdr, std::uint32_t) {
+      std::uint32_t number = 0;
+      std::memcpy(&number, cdr + 8, 4);
+      auto& heard = *static_cast<Heard*>(self);
+      heard.numbers.emplace_back(number, !heard.network.next_delivery());
+    }
+  } heard{network(), {}};
+  network().set_default_link({.delay = 3ms});
+  TestParticipant a("a"), b("b");
+  TestWriter writer(a, keyed_type(), best_effort);
+  TestReader reader(b, keyed_type(), best_effort, {.signal = nullptr, .sample = &Heard::call, .context = &heard});
+  writer.write(1);
+  network().advance(TimePoint{1ms});
+  writer.write(2);
+  network().advance(TimePoint{2ms});
+  EXPECT_TRUE(heard.numbers.empty());
+  network().advance(TimePoint{10ms});  // over both: a queue that keeps one would have lost the first
+  EXPECT_EQ(heard.numbers, (std::vector<std::pair<std::uint32_t, bool>>{{1, false}, {2, true}}));
+  EXPECT_EQ(reader.losses().replaced, 0u);
 }
 
 TEST_F(VirtualNetwork, RefusesAndCountsKeysOverTheBound) {
@@ -86,6 +113,7 @@ TEST_F(VirtualNetwork, RefusesAndCountsKeysOverTheBound) {
   EXPECT_EQ(network().writes_refused(), 1u);
   EXPECT_TRUE(free.write(99, 99));  // without a history it may write, but the reader has no room
   EXPECT_EQ(network().statistics("c", "b").dropped, 1u);
+  EXPECT_EQ(reader.losses().rejected, 1u);
   EXPECT_EQ(reader.take().size(), 8u);
 }
 

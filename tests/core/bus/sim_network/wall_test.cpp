@@ -39,7 +39,9 @@ TEST_F(WallNetwork, DeliversNoSoonerThanTheDelayAndWakesTheReader) {
   std::atomic<int> wakes = 0;
   TestWriter writer(a, plain_type(), best_effort_deep);
   TestReader reader(b, plain_type(), best_effort_deep,
-                    {.signal = [](void* context) { ++*static_cast<std::atomic<int>*>(context); }, .context = &wakes});
+                    {.signal = [](void* context) { ++*static_cast<std::atomic<int>*>(context); },
+                     .sample = nullptr,
+                     .context = &wakes});
   const auto start = Steady::now();
   writer.write(1);
   writer.write(2);

@@ -103,8 +103,8 @@ class TestReader {
   TestReader(TestParticipant& participant, const char* topic, const eciton_type& type, const eciton_qos& qos)
       : abi_(participant.abi()) {
     char error[512] = "";
-    const eciton_wake wake = {[](void* self) { ++static_cast<TestReader*>(self)->signals_; }, this};
-    handle_ = abi_.reader_create(participant.handle(), topic, &type, &qos, wake, error, sizeof error);
+    const eciton_delivery delivery = {[](void* self) { ++static_cast<TestReader*>(self)->signals_; }, nullptr, this};
+    handle_ = abi_.reader_create(participant.handle(), topic, &type, &qos, delivery, error, sizeof error);
     error_ = error;
   }
   ~TestReader() { destroy(); }
