@@ -16,10 +16,10 @@ constexpr std::uint32_t male = 0, female = 1;                  // LEGION's ports
 
 }  // namespace
 
-ChainTrials::ChainTrials(const FormationOptions& options, const Progress& progress, const net::OwnedNet* net,
+ChainTrials::ChainTrials(const FormationOptions& options, const RunControl& control, const net::OwnedNet* net,
                          std::uint32_t modules, const VendorPair& pair)
     : options_(options),
-      progress_(progress),
+      control_(control),
       fleet_(options, net),
       pair_(pair),
       listener_(value_or_throw(MemberListener::open(fleet_.directory() / "members.sock"))),
@@ -61,10 +61,11 @@ std::optional<FormationTimes> ChainTrials::trial() {
   const bool came = wait_until(formed, trial_timeout);
   std::optional<FormationTimes> times;
   if (came) {
-    const std::int64_t begin_ns = std::min(members_[n - 2].latched.monotonic_ns, members_[n - 1].latched.monotonic_ns);
-    const auto [first, last] = std::minmax_element(members_.begin(), members_.end(), [](const auto& a, const auto& b) {
-      return a.view.monotonic_ns < b.view.monotonic_ns;
-    });
+    const std::int64_t begin_ns =
+        std::min(members_[n - 2].latched.monotonic_ns, members_[n - 1].latched.monotonic_ns);
+    const auto [first, last] =
+        std::minmax_element(members_.begin(), members_.end(),
+                            [](const auto& a, const auto& b) { return a.view.monotonic_ns < b.view.monotonic_ns; });
     const auto wrench = std::max_element(members_.begin(), members_.end(), [](const auto& a, const auto& b) {
       return a.wrench.monotonic_ns < b.wrench.monotonic_ns;
     });
@@ -88,7 +89,8 @@ void ChainTrials::link(std::size_t first, bool measured_pause) {
   a.link.send(to_a);
   b.link.send(to_b);
   // So that a latch catches at any time of the services' periods.
-  const auto spread = std::chrono::microseconds(std::uniform_int_distribution<>(0, measured_pause ? 50'000 : 0)(random_));
+  const auto spread =
+      std::chrono::microseconds(std::uniform_int_distribution<>(0, measured_pause ? 50'000 : 0)(random_));
   const Duration caught = monotonic_now() + approach + spread;
   wait_until([&] { return monotonic_now() >= caught; }, start_timeout);
   to_a.what = to_b.what = MemberOrder::What::latch;
@@ -126,13 +128,13 @@ bool ChainTrials::wait_until(const std::function<bool()>& done, Duration timeout
 }
 
 void ChainTrials::pump() {
-  std::vector<pollfd> wait{{progress_.stop.file_descriptor(), POLLIN, 0}, {listener_.fd(), POLLIN, 0}};
+  std::vector<pollfd> wait{{control_.stop.file_descriptor(), POLLIN, 0}, {listener_.fd(), POLLIN, 0}};
   for (const Member& m : members_) {
     if (m.link.is_open()) wait.push_back({m.link.fd(), POLLIN, 0});
   }
   fleet_.add_descriptors(wait);
   deploy::wait_for(wait, std::chrono::milliseconds(10));
-  if (progress_.stop.requested()) throw FormationFailure{"interrupted"};
+  if (control_.stop.requested()) throw FormationFailure{"interrupted"};
   if (const std::string trouble = fleet_.trouble(); !trouble.empty()) throw FormationFailure{trouble};
   while (auto caller = listener_.accept()) {
     // It says hello at once; who it is stands in that.

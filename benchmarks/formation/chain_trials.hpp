@@ -25,7 +25,7 @@ struct FormationFailure {
 
 class ChainTrials {
  public:
-  ChainTrials(const FormationOptions& options, const Progress& progress, const net::OwnedNet* net,
+  ChainTrials(const FormationOptions& options, const RunControl& control, const net::OwnedNet* net,
               std::uint32_t modules, const VendorPair& pair);
 
   /// Starts the members and links all but the last; throws FormationFailure.
@@ -53,7 +53,7 @@ class ChainTrials {
   bool shared(std::size_t from, std::size_t to) const;
 
   const FormationOptions& options_;
-  const Progress& progress_;
+  const RunControl& control_;
   Fleet fleet_;
   VendorPair pair_;
   MemberListener listener_;

@@ -22,10 +22,8 @@ struct FormationOptions {
   std::vector<std::uint32_t> modules{2, 3, 4, 5, 6, 7, 8};
   std::vector<double> losses{0, 0.1, 0.2};  // of every directed link
   /// Every pair with `pairs_at` modules, the first alone with other numbers.
-  std::vector<VendorPair> pairs{{"cyclonedds", "cyclonedds"},
-                                {"fastdds", "fastdds"},
-                                {"cyclonedds", "fastdds"},
-                                {"fastdds", "cyclonedds"}};
+  std::vector<VendorPair> pairs{
+      {"cyclonedds", "cyclonedds"}, {"fastdds", "fastdds"}, {"cyclonedds", "fastdds"}, {"fastdds", "cyclonedds"}};
   std::uint32_t pairs_at = 3;
   std::size_t trials = 60;
   bool form = true;
@@ -41,12 +39,12 @@ struct FormationOptions {
   /// false: over loopback, where nothing is lost and discovery is not what it is between hosts.
   bool hosts = true;
   std::string net = "eciton-bench";
-  std::uint64_t seed = 1;  // of the radio and of when a latch catches
+  std::uint64_t seed = 1;                // of the radio and of when a latch catches
   std::vector<std::string> assignments;  // key=value, of the modules' configs
   std::filesystem::path programs;
 };
 
 /// Throws BadInput before anything starts when a right or a program is missing.
-Result run_formation(const FormationOptions& options, const Progress& progress);
+Result run_formation(const FormationOptions& options, const runtime::StopFlag& stop, const Progress& progress);
 
 }  // namespace eciton::bench

@@ -136,24 +136,24 @@ std::string load_average() {
 /// The blocks of one condition. What goes wrong is noted, and ends the condition.
 class ConditionRun {
  public:
-  ConditionRun(const JitterOptions& options, const std::string& cyclictest, const Progress& progress, Result& result)
-      : options_(options), cyclictest_(cyclictest), progress_(progress), result_(result), begin_(monotonic_now()) {}
+  ConditionRun(const JitterOptions& options, const std::string& cyclictest, const RunControl& control, Result& result)
+      : options_(options), cyclictest_(cyclictest), control_(control), result_(result), begin_(monotonic_now()) {}
 
   Condition run(const std::string& name, std::size_t finished, std::size_t all) {
     Condition condition = make_condition(name);
     const std::string before = load_average();
     const auto background = Background::start(name, options_);
     if (!background) return stop_at(condition, background.error().message);
-    if (name != "idle") wait_for_end(to_s(settle), progress_.stop);
+    if (name != "idle") wait_for_end(to_s(settle), control_.stop);
     result_.notes.push_back(name + ": load average before it began " + before);
     const auto order = abba_order(cyclictest_.empty() ? 1 : 2, options_.rounds);
-    for (std::size_t k = 0; k < order.size() && !progress_.stop.requested(); ++k) {
+    for (std::size_t k = 0; k < order.size() && !control_.stop.requested(); ++k) {
       const bool ours = order[k] == 0;
-      progress_.tell(finished + k, all, static_cast<double>(all - finished - k) * options_.block_s,
-                     (ours ? "ours, " : "cyclictest, ") + name);
+      control_.tell(finished + k, all, static_cast<double>(all - finished - k) * options_.block_s,
+                    (ours ? "ours, " : "cyclictest, ") + name);
       const double at_s = to_s(monotonic_now() - begin_);
       const auto stolen_before = stolen();
-      Block block = ours ? run_ours(options_, progress_.stop) : run_baseline(options_, cyclictest_, progress_.stop);
+      Block block = ours ? run_ours(options_, control_.stop) : run_baseline(options_, cyclictest_, control_.stop);
       if (const auto stolen_after = stolen(); stolen_before && stolen_after)
         block.stolen = *stolen_after - *stolen_before;
       append(ours ? condition.ours : condition.baseline, block, at_s);
@@ -173,7 +173,7 @@ class ConditionRun {
 
   const JitterOptions& options_;
   const std::string& cyclictest_;
-  const Progress& progress_;
+  const RunControl& control_;
   Result& result_;
   Duration begin_;
 };
@@ -230,7 +230,8 @@ void finish(Result& result, std::vector<Condition>& conditions, const JitterOpti
 
 }  // namespace
 
-Result run_jitter(const JitterOptions& given, const Progress& progress) {
+Result run_jitter(const JitterOptions& given, const runtime::StopFlag& stop, const Progress& progress) {
+  const RunControl control{stop, progress};
   ::unsetenv("ECITON_DDS");  // the vendor asked for here counts more
   JitterOptions options = given;
   if (options.programs.empty()) options.programs = deploy::program_directory();
@@ -250,12 +251,12 @@ Result run_jitter(const JitterOptions& given, const Progress& progress) {
   result.seed = options.seed;
   std::vector<Condition> conditions;
   const std::size_t blocks = options.rounds * (options.cyclictest ? 2 : 1);
-  ConditionRun run(options, cyclictest, progress, result);
+  ConditionRun run(options, cyclictest, control, result);
   for (const std::string& name : options.conditions) {
-    if (progress.stop.requested()) break;
+    if (control.stop.requested()) break;
     conditions.push_back(run.run(name, conditions.size() * blocks, options.conditions.size() * blocks));
   }
-  result.partial = result.partial || progress.stop.requested();
+  result.partial = result.partial || control.stop.requested();
   finish(result, conditions, options);
   return result;
 }

@@ -25,6 +25,6 @@ struct JitterOptions {
 };
 
 /// Throws BadInput before anything starts when a right or a tool is missing.
-Result run_jitter(const JitterOptions& options, const Progress& progress);
+Result run_jitter(const JitterOptions& options, const runtime::StopFlag& stop, const Progress& progress);
 
 }  // namespace eciton::bench

@@ -29,12 +29,10 @@ int run(int argc, char** argv) {
   runtime::StopFlag stop;
   const runtime::StopOnSignals on_signals(stop);
   bench::ProgressLine line("bench path");
-  const bench::Progress progress{[&](std::size_t done, std::size_t all, double left_s, const std::string& doing) {
-                                   line.show(done, all, left_s, doing);
-                                   std::fprintf(stderr, "%s\n", doing.c_str());
-                                 },
-                                 stop};
-  const bench::Result result = bench::run_path(options, progress);
+  const auto show = [&](std::size_t done, std::size_t all, double left_s, const std::string& doing) {
+    line.show(done, all, left_s, doing);
+  };
+  const bench::Result result = bench::run_path(options, stop, show);
   std::printf("%s", bench::to_text(result).c_str());
   ok_or_throw(bench::write_report_files(files, result));
   return result.partial ? 1 : 0;

@@ -224,18 +224,18 @@ class TapThread {
 /// What the main thread does while the module flies.
 class Watch {
  public:
-  Watch(deploy::Launches& launches, const Progress& progress, Pilot& pilot)
-      : launches_(launches), progress_(progress), pilot_(pilot) {}
+  Watch(deploy::Launches& launches, const RunControl& control, Pilot& pilot)
+      : launches_(launches), control_(control), pilot_(pilot) {}
 
   /// Looks after the processes until `done`; throws Failure when one of them ends, or after `timeout`.
   void until(const std::function<bool(Duration now)>& done, Duration timeout, const std::string& what) {
     const Duration end = monotonic_now() + timeout;
     for (Duration now = monotonic_now(); !done(now); now = monotonic_now()) {
-      deploy::watch(launches_, {progress_.stop.file_descriptor()}, pace,
+      deploy::watch(launches_, {control_.stop.file_descriptor()}, pace,
                     [](deploy::Launch& launch, const deploy::ChildReport& report) {
                       throw Failure{deploy::describe(launch, report)};
                     });
-      if (progress_.stop.requested()) throw Failure{"interrupted"};
+      if (control_.stop.requested()) throw Failure{"interrupted"};
       if (monotonic_now() > end)
         throw Failure{what + " within " + std::to_string(timeout / std::chrono::seconds(1)) + " s"};
       pilot_.poll();
@@ -244,7 +244,7 @@ class Watch {
 
  private:
   deploy::Launches& launches_;
-  const Progress& progress_;
+  const RunControl& control_;
   Pilot& pilot_;
 };
 
@@ -256,9 +256,9 @@ std::vector<InsideSample> read_inside(const fs::path& file) {
 }
 
 void fly_and_record(const PathOptions& options, const FlightVariant& variant, deploy::Launches& launches,
-                    Pilot& pilot, LinkTap& tap, const Progress& progress,
+                    Pilot& pilot, LinkTap& tap, const RunControl& control,
                     const std::function<void(const std::string&)>& tell) {
-  Watch watch(launches, progress, pilot);
+  Watch watch(launches, control, pilot);
   tell(variant.name() + ": starting");
   watch.until([&](Duration) { return pilot.alive("control") && pilot.alive("estimation") && tap.passed() > 100; },
               start_timeout, "the services were not heard");
@@ -291,7 +291,7 @@ void check_variant(const PathOptions& options, const FlightVariant& variant) {
   }
 }
 
-FlightRecord fly(const PathOptions& options, const FlightVariant& variant, const Progress& progress,
+FlightRecord fly(const PathOptions& options, const FlightVariant& variant, const RunControl& control,
                  const std::function<void(const std::string&)>& tell) {
   const Plan p = plan(options, variant);
   deploy::Launches launches = value_or_throw(deploy::claim_all({p.launch}));
@@ -312,7 +312,7 @@ FlightRecord fly(const PathOptions& options, const FlightVariant& variant, const
     write_file(p.directory / "world.yaml", world_text(options, variant, p.directory));
     ok_or_throw(tap.start());
     ok_or_throw(deploy::start_all(launches));
-    fly_and_record(options, variant, launches, pilot, tap.tap(), progress, tell);
+    fly_and_record(options, variant, launches, pilot, tap.tap(), control, tell);
   } catch (const Failure& failure) {
     record.trouble = variant.name() + ": " + failure.why;
   }

@@ -31,7 +31,7 @@ struct FlightRecord {
 };
 
 /// Starts everything, waits for the hover, records for options.seconds and stops everything.
-FlightRecord fly(const PathOptions& options, const FlightVariant& variant, const Progress& progress,
+FlightRecord fly(const PathOptions& options, const FlightVariant& variant, const RunControl& control,
                  const std::function<void(const std::string& doing)>& tell);
 
 /// The names of a variant's processes; throws BadInput on an unknown layout or vendor, or when a program or plugin

@@ -144,7 +144,8 @@ Json config_of(const PathOptions& o) {
 
 }  // namespace
 
-Result run_path(const PathOptions& given, const Progress& progress) {
+Result run_path(const PathOptions& given, const runtime::StopFlag& stop, const Progress& progress) {
+  const RunControl control{stop, progress};
   ::unsetenv("ECITON_DDS");  // the vendors asked for here count more
   PathOptions options = given;
   if (options.programs.empty()) options.programs = deploy::program_directory();
@@ -164,15 +165,15 @@ Result run_path(const PathOptions& given, const Progress& progress) {
   const auto order = abba_order(results.size(), options.rounds);
   constexpr double prelude_s = 8;  // start and take-off
   std::int64_t begin_ns = 0;
-  for (std::size_t k = 0; k < order.size() && !progress.stop.requested(); ++k) {
+  for (std::size_t k = 0; k < order.size() && !control.stop.requested(); ++k) {
     VariantResult& r = results[order[k]];
     const double left_s = static_cast<double>(order.size() - k) * (options.seconds + prelude_s);
-    const FlightRecord record = fly(options, r.variant, progress,
-                                    [&](const std::string& doing) { progress.tell(k, order.size(), left_s, doing); });
+    const FlightRecord record = fly(options, r.variant, control,
+                                    [&](const std::string& doing) { control.tell(k, order.size(), left_s, doing); });
     append(r, record, begin_ns);
     if (!record.trouble.empty()) result.notes.push_back(record.trouble);
   }
-  result.partial = !result.notes.empty() || progress.stop.requested();
+  result.partial = !result.notes.empty() || control.stop.requested();
   result.notes.push_back(
       "Times count from when the readings leave for the hardware host to when its commands are back, on the host's "
       "own clock; age counts from the IMU sample's own stamp.");

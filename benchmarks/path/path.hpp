@@ -28,6 +28,6 @@ struct PathOptions {
 
 /// Flies the simulated module and measures. Throws BadInput before anything starts when something that is asked for
 /// cannot be had; what fails later is in the result's notes, and marks it as partial.
-Result run_path(const PathOptions& options, const Progress& progress);
+Result run_path(const PathOptions& options, const runtime::StopFlag& stop, const Progress& progress);
 
 }  // namespace eciton::bench

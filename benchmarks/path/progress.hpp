@@ -8,13 +8,16 @@
 
 namespace eciton::bench {
 
-struct Progress {
-  /// As ProgressLine::show; empty: nobody looks.
-  std::function<void(std::size_t finished, std::size_t all, double left_s, const std::string& doing)> show;
+/// finished, all, seconds left, what is being done.
+using Progress = std::function<void(std::size_t, std::size_t, double, const std::string&)>;
+
+/// Both, on their way through a benchmark.
+struct RunControl {
   const runtime::StopFlag& stop;
+  const Progress& progress;
 
   void tell(std::size_t finished, std::size_t all, double left_s, const std::string& doing) const {
-    if (show) show(finished, all, left_s, doing);
+    if (progress) progress(finished, all, left_s, doing);
   }
 };
 

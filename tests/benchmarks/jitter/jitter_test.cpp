@@ -11,13 +11,13 @@ namespace {
 class JitterTest : public testing::Test {
  protected:
   runtime::StopFlag stop_;
-  Progress progress_{.show = {}, .stop = stop_};
+  Progress progress_;
   JitterOptions options_{.conditions = {"idle"}, .block_s = 0.3, .rounds = 2, .realtime_priority = 0};
 };
 
 TEST_F(JitterTest, MeasuresEveryStepOfTheServiceAndOfTheBaseline) {
   options_.cyclictest = find_tool("cyclictest", "rt-tests").ok();
-  const Result result = run_jitter(options_, progress_);
+  const Result result = run_jitter(options_, stop_, progress_);
   ASSERT_FALSE(result.partial) << (result.notes.empty() ? "" : result.notes.back());
   ASSERT_EQ(result.samples.size(), options_.cyclictest ? 2u : 1u);
   for (const Samples& samples : result.samples) {
@@ -34,14 +34,14 @@ TEST_F(JitterTest, MeasuresEveryStepOfTheServiceAndOfTheBaseline) {
 TEST_F(JitterTest, FliesControlUnderDdsTraffic) {
   options_.conditions = {"traffic"};
   options_.cyclictest = false;
-  const Result result = run_jitter(options_, progress_);
+  const Result result = run_jitter(options_, stop_, progress_);
   EXPECT_FALSE(result.partial) << (result.notes.empty() ? "" : result.notes.back());
 }
 
 TEST_F(JitterTest, AnUnknownConditionIsBadInputBeforeAnythingStarts) {
   options_.conditions = {"idle", "stormy"};
   try {
-    run_jitter(options_, progress_);
+    run_jitter(options_, stop_, progress_);
     FAIL();
   } catch (const BadInput& bad) {
     EXPECT_NE(bad.error.message.find("stormy"), std::string::npos);
@@ -51,7 +51,7 @@ TEST_F(JitterTest, AnUnknownConditionIsBadInputBeforeAnythingStarts) {
 
 TEST_F(JitterTest, WhatIsInterruptedIsPartialAndEndsAtOnce) {
   stop_.request();
-  EXPECT_TRUE(run_jitter(options_, progress_).partial);
+  EXPECT_TRUE(run_jitter(options_, stop_, progress_).partial);
 }
 
 }  // namespace

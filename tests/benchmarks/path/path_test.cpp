@@ -22,7 +22,7 @@ class PathTest : public testing::Test {
 
   std::string directory_;
   runtime::StopFlag stop_;
-  Progress progress_{.show = {}, .stop = stop_};
+  Progress progress_;
 };
 
 const Samples* find(const Result& result, const std::string& name) {
@@ -36,7 +36,7 @@ TEST_F(PathTest, FliesTheRealProcessesAndSplitsTheTotalIntoItsStages) {
   PathOptions options;
   options.seconds = 1;
   options.layouts = {"services", "one-process"};
-  const Result result = run_path(options, progress_);
+  const Result result = run_path(options, stop_, progress_);
   for (const std::string& note : result.notes) std::printf("%s\n", note.c_str());
   ASSERT_FALSE(result.partial);
   const Samples* total = find(result, "imu_to_rotors.services.cyclonedds");
@@ -60,19 +60,19 @@ TEST_F(PathTest, FliesTheRealProcessesAndSplitsTheTotalIntoItsStages) {
 TEST_F(PathTest, ALayoutOrVendorOrProgramThatIsNotThereIsBadInputBeforeAnythingStarts) {
   PathOptions options;
   options.layouts = {"scattered"};
-  EXPECT_THROW(run_path(options, progress_), BadInput);
+  EXPECT_THROW(run_path(options, stop_, progress_), BadInput);
   options = {};
   options.vendors = {"opendds"};
-  EXPECT_THROW(run_path(options, progress_), BadInput);
+  EXPECT_THROW(run_path(options, stop_, progress_), BadInput);
   options = {};
   options.programs = "/nonexistent";
-  EXPECT_THROW(run_path(options, progress_), BadInput);
+  EXPECT_THROW(run_path(options, stop_, progress_), BadInput);
   EXPECT_FALSE(std::filesystem::exists(directory_));
 }
 
 TEST_F(PathTest, WhatIsInterruptedIsPartialAndEndsAtOnce) {
   stop_.request();
-  const Result result = run_path({}, progress_);
+  const Result result = run_path({}, stop_, progress_);
   EXPECT_TRUE(result.partial);
 }
 
