@@ -1,4 +1,5 @@
 // The `eciton` command: the list of its verbs, each in a file of its own.
+#include "deploy/command/bench.hpp"
 #include "deploy/command/command_line.hpp"
 #include "deploy/command/demo.hpp"
 #include "deploy/command/down.hpp"
@@ -12,5 +13,6 @@
 int main(int argc, char** argv) {
   using namespace eciton::deploy;
   return run_command_line(
-      argc, argv, {&add_fly, &add_up, &add_down, &add_status, &add_demo, &add_net, &add_experiment, &add_topic});
+      argc, argv,
+      {&add_fly, &add_up, &add_down, &add_status, &add_demo, &add_net, &add_experiment, &add_topic, &add_bench});
 }

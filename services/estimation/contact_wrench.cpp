@@ -8,40 +8,48 @@ namespace eciton::estimation {
 using robot::Vector3;
 using robot::Wrench;
 
-ContactWrenches contact_wrenches(std::span<const MemberWrench> all, const robot::FreshnessConfig& config) {
-  ContactWrenches out;
-  out.count = std::min(all.size(), robot::members_max);
-  const std::span<const MemberWrench> members = all.first(out.count);
-  out.complete = out.count > 0;
+ChainWrench solve_contacts(std::span<const MemberWrench> members, std::span<MemberContact> contacts,
+                           const robot::FreshnessConfig& config) {
+  ChainWrench out;
+  const std::size_t count = members.size();
+  out.complete = count > 0;
   double weight = 0;
-  for (std::size_t k = 0; k < out.count; ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     const MemberWrench& m = members[k];
     out.complete = out.complete && m.known;
-    out.members[k].freshness = m.known ? robot::freshness(m.age_s, config) : 0;
-    if (out.members[k].freshness >= 1) ++out.fresh;
-    weight += out.members[k].freshness;
-    out.mean_r_W += m.r_W / static_cast<double>(out.count);
-    const bool last = k + 1 == out.count;
-    out.members[k].link_W =
-        last ? m.port_to_next_W : Vector3(0.5 * (m.port_to_next_W + members[k + 1].port_to_last_W));
+    contacts[k] = {};
+    contacts[k].freshness = m.known ? robot::freshness(m.age_s, config) : 0;
+    if (contacts[k].freshness >= 1) ++out.fresh;
+    weight += contacts[k].freshness;
+    out.mean_r_W += m.r_W / static_cast<double>(count);
+    const bool last = k + 1 == count;
+    contacts[k].link_W = last ? m.port_to_next_W : Vector3(0.5 * (m.port_to_next_W + members[k + 1].port_to_last_W));
   }
   if (!out.complete || weight < 1e-9) return out;
 
-  for (std::size_t k = 0; k < out.count; ++k) {
-    out.common_W.force += out.members[k].freshness / weight * members[k].external_W.force;
+  for (std::size_t k = 0; k < count; ++k) {
+    out.common_W.force += contacts[k].freshness / weight * members[k].external_W.force;
   }
-  for (std::size_t k = 0; k < out.count; ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     const Wrench& W = members[k].external_W;
     const Vector3 lever = (members[k].r_W - out.mean_r_W).cross(W.force - out.common_W.force);
-    out.common_W.moment += out.members[k].freshness / weight * (W.moment + lever);
+    out.common_W.moment += contacts[k].freshness / weight * (W.moment + lever);
   }
   Wrench sum;  // about mean_r_W
-  for (std::size_t k = 0; k < out.count; ++k) {
-    MemberContact& m = out.members[k];
+  for (std::size_t k = 0; k < count; ++k) {
+    MemberContact& m = contacts[k];
     m.d_W = (members[k].external_W - out.common_W) * m.freshness;
     sum += robot::shift(m.d_W, members[k].r_W - out.mean_r_W);
-    if (k + 1 < out.count) m.contact_W = -robot::shift(sum, out.mean_r_W - m.link_W);
+    if (k + 1 < count) m.contact_W = -robot::shift(sum, out.mean_r_W - m.link_W);
   }
+  return out;
+}
+
+ContactWrenches contact_wrenches(std::span<const MemberWrench> all, const robot::FreshnessConfig& config) {
+  ContactWrenches out;
+  out.count = std::min(all.size(), robot::members_max);
+  static_cast<ChainWrench&>(out) =
+      solve_contacts(all.first(out.count), std::span(out.members).first(out.count), config);
   return out;
 }
 

@@ -29,13 +29,17 @@ struct MemberContact {
   double freshness = 0;
 };
 
-struct ContactWrenches {
-  std::size_t count = 0;
-  std::array<MemberContact, robot::members_max> members{};
+/// What is of the whole chain.
+struct ChainWrench {
   robot::Wrench common_W;  // disturbance common to all, about mean_r_W
   robot::Vector3 mean_r_W = robot::Vector3::Zero();
   std::size_t fresh = 0;  // members that count fully
   bool complete = false;  // every member known: else all wrenches here are zero
+};
+
+struct ContactWrenches : ChainWrench {
+  std::size_t count = 0;
+  std::array<MemberContact, robot::members_max> members{};
 };
 
 /// Rule for silent members: a member's last wrench is held and its *difference from the common one* fades
@@ -43,7 +47,10 @@ struct ContactWrenches {
 /// adds up to nothing. With weights f_k (1 while fresh):
 ///   D_F = sum f_k F_k / sum f_k,   D_M = sum f_k [M_k + (r_k - r_mean) x (F_k - D_F)] / sum f_k about r_mean,
 ///   d_k = f_k (W_k - D),           c_k = -X(r_mean - P_k) sum_{j<=k} X(r_j - r_mean) d_j.
-/// Real-time safe, pure; at most members_max members are looked at.
+/// Real-time safe, pure. A chain of any length, in time linear in it; `contacts` has a place for each member.
+ChainWrench solve_contacts(std::span<const MemberWrench> members, std::span<MemberContact> contacts,
+                           const robot::FreshnessConfig& config = {});
+/// At most members_max members are looked at.
 ContactWrenches contact_wrenches(std::span<const MemberWrench> members, const robot::FreshnessConfig& config = {});
 
 }  // namespace eciton::estimation

@@ -1,0 +1,302 @@
+// Formations and discoveries one after the other, each with members of its own; then the tables.
+#include "benchmarks/formation/formation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+#include "benchmarks/formation/chain_trials.hpp"
+#include "benchmarks/formation/discovery.hpp"
+#include "benchmarks/statistics/summary.hpp"
+#include "core/base/wall_clock.hpp"
+#include "core/bus/plugin_loader.hpp"
+#include "deploy/supervisor/launch.hpp"
+
+namespace eciton::bench {
+namespace {
+
+constexpr double trial_s = 1.5;  // about; with the end of the link
+constexpr double start_s = 8;    // of members
+
+/// Members of one number and pair; the losses are set while they run.
+struct FormationCase {
+  std::uint32_t modules;
+  VendorPair pair;
+};
+
+std::string loss_name(double loss) { return std::to_string(std::lround(loss * 100)); }
+
+std::vector<FormationCase> formation_cases(const FormationOptions& options) {
+  std::vector<FormationCase> cases;
+  if (!options.form) return cases;
+  for (const std::uint32_t modules : options.modules) {
+    const std::size_t pairs =
+        modules == options.pairs_at ? options.pairs.size() : std::min<std::size_t>(1, options.pairs.size());
+    for (std::size_t k = 0; k < pairs; ++k) cases.push_back({modules, options.pairs[k]});
+  }
+  return cases;
+}
+
+std::vector<DiscoveryCase> discovery_cases(const FormationOptions& options) {
+  std::vector<DiscoveryCase> cases;
+  if (!options.discover || !options.hosts) return cases;
+  for (const bool lean : {true, false}) {
+    for (const std::string& vendor : options.discovery_vendors) {
+      for (const std::uint32_t modules : options.discovery_modules) cases.push_back({lean, vendor, modules});
+    }
+  }
+  return cases;
+}
+
+void check(const FormationOptions& options) {
+  const auto within = [](const std::vector<std::uint32_t>& modules, std::uint32_t max, const char* what) {
+    for (const std::uint32_t n : modules) {
+      if (n < 2 || n > max) {
+        throw BadInput{
+            {std::string(what) + " of " + std::to_string(n) + " modules: expected 2 to " + std::to_string(max)}};
+      }
+    }
+  };
+  within(options.modules, 8, "a chain");
+  within(options.discovery_modules, 16, "discovery");
+  for (const double loss : options.losses) {
+    if (!(loss >= 0 && loss < 1)) throw BadInput{{"a loss of " + std::to_string(loss) + ": expected 0 to below 1"}};
+    if (loss > 0 && !options.hosts) {
+      throw BadInput{{"a loss of " + loss_name(loss) + " % over loopback, which loses nothing: it takes hosts"}};
+    }
+  }
+  for (const VendorPair& pair : options.pairs) {
+    for (const std::string& vendor : {pair.first, pair.second}) {
+      if (const auto plugin = bus::load_plugin(vendor); !plugin) throw BadInput{plugin.error()};
+    }
+  }
+  for (const char* program : {"eciton-bench-member", "eciton-bench-participant", "eciton-service", "eciton"}) {
+    if (!std::filesystem::exists(options.programs / program)) {
+      throw BadInput{
+          {"program " + (options.programs / program).string() + " is not there; build it, or give its directory"}};
+    }
+  }
+}
+
+/// Runs what is asked for and fills the result; one per run.
+class FormationRun {
+ public:
+  FormationRun(const FormationOptions& options, const RunControl& control, Result& result)
+      : options_(options), control_(control), result_(result), begin_(monotonic_now()) {}
+
+  void run() {
+    const auto formations = formation_cases(options_);
+    const auto discoveries = discovery_cases(options_);
+    all_ = formations.size() * options_.losses.size() + discoveries.size();
+    left_s_ = static_cast<double>(formations.size()) *
+                  (start_s + static_cast<double>(options_.losses.size() * options_.trials) * trial_s) +
+              static_cast<double>(discoveries.size()) * discovery_s();
+    bring_up_net(formations, discoveries);
+    for (const FormationCase& which : formations) {
+      if (!control_.stop.requested()) form(which);
+    }
+    if (net_) static_cast<void>(net_->set("", "", {"clear"}));
+    for (const DiscoveryCase& which : discoveries) {
+      if (!control_.stop.requested()) discover(which);
+    }
+    finish();
+  }
+
+ private:
+  double discovery_s() const { return options_.settle_s + options_.joining_s + options_.idle_s; }
+
+  void bring_up_net(const std::vector<FormationCase>& formations, const std::vector<DiscoveryCase>& discoveries) {
+    if (!options_.hosts) return;
+    std::uint32_t hosts = 2;
+    for (const FormationCase& which : formations) hosts = std::max(hosts, which.modules);
+    for (const DiscoveryCase& which : discoveries) hosts = std::max(hosts, which.modules);
+    net_.emplace(value_or_throw(
+        net::OwnedNet::start({.name = options_.net, .modules = hosts, .seed = options_.seed}, options_.programs)));
+  }
+
+  void fail(const std::string& what, const std::string& why) {
+    result_.notes.push_back(what + ": " + why);
+    result_.partial = true;
+  }
+
+  void form(const FormationCase& which) {
+    const std::string name = std::to_string(which.modules) + "." + which.pair.name();
+    const double began_left_s = left_s_;
+    try {
+      if (net_) ok_or_throw(net_->set("", "", {"clear"}));
+      control_.tell(finished_, all_, left_s_, name + ": starting");
+      ChainTrials trials(options_, control_, net_ ? &*net_ : nullptr, which.modules, which.pair);
+      trials.prepare();
+      for (const double loss : options_.losses) form_at(trials, which, loss);
+    } catch (const FormationFailure& failure) {
+      fail(name, failure.why);
+    }
+    left_s_ = began_left_s - start_s - static_cast<double>(options_.losses.size() * options_.trials) * trial_s;
+  }
+
+  void form_at(ChainTrials& trials, const FormationCase& which, double loss) {
+    if (net_) ok_or_throw(net_->set("", "", {"loss=" + loss_name(loss) + "%"}));
+    const std::string suffix = "." + std::to_string(which.modules) + "." + loss_name(loss) + "." + which.pair.name();
+    Samples view, wrench, skew;
+    for (auto [samples, what] : {std::pair{&view, "view"}, {&wrench, "wrench"}, {&skew, "skew"}}) {
+      samples->name = what + suffix;
+      samples->unit = "ms";
+      samples->chart = std::string(what) + " at " + loss_name(loss) + " % loss";
+    }
+    const auto keep = [&](bool partial) {
+      view.partial = wrench.partial = skew.partial = partial;
+      for (Samples* samples : {&view, &wrench, &skew}) formations_.push_back(std::move(*samples));
+    };
+    try {
+      for (std::size_t k = 0; k < options_.trials; ++k) {
+        control_.tell(finished_, all_, left_s_, suffix.substr(1) + ", " + std::to_string(k + 1));
+        const double at_s = to_s(monotonic_now() - begin_);
+        const auto times = trials.trial();
+        for (Samples* samples : {&view, &wrench, &skew}) {
+          ++samples->sent;
+          samples->lost += times ? 0 : 1;
+          if (times) samples->at_s.push_back(at_s);
+        }
+        left_s_ -= trial_s;
+        if (!times) continue;
+        view.values.push_back(times->view_s * 1e3);
+        wrench.values.push_back(times->wrench_s * 1e3);
+        skew.values.push_back(times->skew_s * 1e3);
+      }
+    } catch (const FormationFailure&) {
+      keep(true);
+      throw;
+    }
+    keep(false);
+    ++finished_;
+  }
+
+  void discover(const DiscoveryCase& which) {
+    control_.tell(finished_, all_, left_s_, "discovery, " + which.name());
+    try {
+      discoveries_.emplace_back(which, measure_discovery(options_, which, *net_, control_));
+    } catch (const FormationFailure& failure) {
+      fail("discovery, " + which.name(), failure.why);
+    }
+    left_s_ -= discovery_s();
+    ++finished_;
+  }
+
+  void finish() {
+    if (!formations_.empty()) {
+      result_.tables.push_back(
+          summary_table("From the latch to the chain that all members fly by, N.loss%.vendors", formations_));
+      Bars bars{.title = "From the latch to the first shared wrench of all members, p99",
+                .unit = "ms",
+                .bars = {},
+                .limit = {}};
+      for (const Samples& samples : formations_) add_formation(samples, bars);
+      result_.bars.push_back(std::move(bars));
+      result_.samples = std::move(formations_);
+    }
+    if (!discoveries_.empty()) add_discoveries();
+    if (!options_.hosts)
+      result_.notes.emplace_back("over loopback: without hosts there is no loss, and no count of discovery");
+  }
+
+  void add_formation(const Samples& samples, Bars& bars) {
+    if (samples.values.empty()) return;
+    const Summary s = summarize(samples);
+    const std::size_t dot = samples.name.find('.');
+    const std::string what = samples.name.substr(0, dot), suffix = samples.name.substr(dot);
+    result_.metrics[what + "_ms_p50" + suffix] = s.p50;
+    result_.metrics[what + "_ms_p99" + suffix] = s.p99;
+    result_.metrics[what + "_ms_max" + suffix] = s.max;
+    result_.metrics[what + "_missing" + suffix] = samples.lost;
+    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+    if (what == "wrench") bars.bars.push_back({"", suffix.substr(1), {nothing, s.p99, nothing}});
+  }
+
+  void add_discoveries() {
+    Table idle{.title = "Discovery when all have met, per module (kbit/s)",
+               .columns = {"", "discovery", "participants", "endpoints", "liveliness", "beacons", "other topics",
+                           "other", "multicast packets"},
+               .rows = {}};
+    Table joining{.title = "When one more joins, all modules together (kB)",
+                  .columns = {"", "discovery", "participants", "endpoints", "liveliness", "topics", "all", "packets"},
+                  .rows = {}};
+    for (const auto& [which, figures] : discoveries_) {
+      const DiscoveryCount& c = figures.idle;
+      const auto kbit_s = [&, modules = which.modules](std::uint64_t bytes) {
+        return static_cast<double>(bytes) * 8e-3 / c.seconds / modules;
+      };
+      idle.rows.push_back({which.name(), number_text(kbit_s(c.discovery.bytes)),
+                           number_text(kbit_s(c.participants.bytes)), number_text(kbit_s(c.endpoints.bytes)),
+                           number_text(kbit_s(c.liveliness.bytes)), number_text(kbit_s(c.beacons.bytes)),
+                           number_text(kbit_s(c.topics.bytes - c.beacons.bytes)), number_text(kbit_s(c.other.bytes)),
+                           std::to_string(c.multicast.packets)});
+      const DiscoveryCount& j = figures.joining;
+      const auto kB = [](std::uint64_t bytes) { return number_text(static_cast<double>(bytes) * 1e-3); };
+      joining.rows.push_back({which.name(), kB(j.discovery.bytes), kB(j.participants.bytes), kB(j.endpoints.bytes),
+                              kB(j.liveliness.bytes), kB(j.topics.bytes), kB(j.total.bytes),
+                              std::to_string(j.total.packets)});
+      result_.metrics["discovery_idle_bit_s." + which.name()] = kbit_s(c.discovery.bytes) * 1e3;
+      result_.metrics["beacons_idle_bit_s." + which.name()] = kbit_s(c.beacons.bytes) * 1e3;
+      result_.metrics["multicast_idle_packets." + which.name()] = c.multicast.packets;
+      result_.metrics["discovery_joining_bytes." + which.name()] = j.discovery.bytes;
+      result_.metrics["all_joining_bytes." + which.name()] = j.total.bytes;
+      if (figures.missed > 0) {
+        fail("discovery, " + which.name(),
+             std::to_string(figures.missed) + " frames came faster than they were counted");
+      }
+    }
+    result_.tables.push_back(std::move(idle));
+    result_.tables.push_back(std::move(joining));
+  }
+
+  const FormationOptions& options_;
+  const RunControl& control_;
+  Result& result_;
+  Duration begin_;
+  std::optional<net::OwnedNet> net_;
+  std::vector<Samples> formations_;
+  std::vector<std::pair<DiscoveryCase, DiscoveryFigures>> discoveries_;
+  std::size_t finished_ = 0, all_ = 0;
+  double left_s_ = 0;
+};
+
+Json config_of(const FormationOptions& o) {
+  Json pairs = Json::array();
+  for (const VendorPair& pair : o.pairs) pairs.push_back(pair.name());
+  return {{"modules", o.modules},
+          {"losses", o.losses},
+          {"pairs", pairs},
+          {"pairs_at", o.pairs_at},
+          {"trials", o.trials},
+          {"hosts", o.hosts},
+          {"realtime_priority", o.realtime_priority},
+          {"discovery_modules", o.discover ? o.discovery_modules : std::vector<std::uint32_t>{}},
+          {"discovery_vendors", o.discovery_vendors},
+          {"idle_s", o.idle_s},
+          {"joining_s", o.joining_s},
+          {"settle_s", o.settle_s},
+          {"set", o.assignments}};
+}
+
+}  // namespace
+
+Result run_formation(const FormationOptions& given, const runtime::StopFlag& stop, const Progress& progress) {
+  ::unsetenv("ECITON_DDS");  // the vendors asked for here count more
+  const RunControl control{stop, progress};
+  FormationOptions options = given;
+  if (options.programs.empty()) options.programs = deploy::program_directory();
+  check(options);
+  if (options.hosts) ok_or_throw(net::check_rights());
+  Result result;
+  result.title = "Chain formation";
+  result.command = "bench formation";
+  result.clock = "monotonic";
+  result.config = config_of(options);
+  result.seed = options.seed;
+  FormationRun(options, control, result).run();
+  result.partial = result.partial || stop.requested();
+  return result;
+}
+
+}  // namespace eciton::bench
