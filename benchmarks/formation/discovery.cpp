@@ -21,6 +21,7 @@ DiscoveryCount sum_of(const std::vector<RtpsMeter>& meters, double seconds) {
     add(sum.participants, meter.of(RtpsUse::participants));
     add(sum.endpoints, meter.of(RtpsUse::endpoints));
     add(sum.liveliness, meter.of(RtpsUse::liveliness));
+    add(sum.unreachable, meter.of(RtpsUse::unreachable));
     add(sum.topics, meter.of(RtpsUse::topics));
     add(sum.multicast, meter.multicast());
     add(sum.other, meter.of(RtpsUse::other));

@@ -215,8 +215,8 @@ class FormationRun {
 
   void add_discoveries() {
     Table idle{.title = "Discovery when all have met, per module (kbit/s)",
-               .columns = {"", "discovery", "participants", "endpoints", "liveliness", "beacons", "other topics",
-                           "other", "multicast packets"},
+               .columns = {"", "discovery", "participants", "endpoints", "liveliness", "unreachable", "beacons",
+                           "other topics", "other", "multicast packets"},
                .rows = {}};
     Table joining{.title = "When one more joins, all modules together (kB)",
                   .columns = {"", "discovery", "participants", "endpoints", "liveliness", "topics", "all", "packets"},
@@ -228,7 +228,8 @@ class FormationRun {
       };
       idle.rows.push_back({which.name(), number_text(kbit_s(c.discovery.bytes)),
                            number_text(kbit_s(c.participants.bytes)), number_text(kbit_s(c.endpoints.bytes)),
-                           number_text(kbit_s(c.liveliness.bytes)), number_text(kbit_s(c.beacons.bytes)),
+                           number_text(kbit_s(c.liveliness.bytes)), number_text(kbit_s(c.unreachable.bytes)),
+                           number_text(kbit_s(c.beacons.bytes)),
                            number_text(kbit_s(c.topics.bytes - c.beacons.bytes)), number_text(kbit_s(c.other.bytes)),
                            std::to_string(c.multicast.packets)});
       const DiscoveryCount& j = figures.joining;

@@ -57,7 +57,7 @@ struct RtpsMeter::Submessage {
 
 TrafficCount RtpsMeter::discovery() const {
   TrafficCount sum;
-  for (const RtpsUse use : {RtpsUse::participants, RtpsUse::endpoints, RtpsUse::liveliness}) {
+  for (const RtpsUse use : {RtpsUse::participants, RtpsUse::endpoints, RtpsUse::liveliness, RtpsUse::unreachable}) {
     sum.packets += of(use).packets;
     sum.bytes += of(use).bytes;
   }
@@ -81,10 +81,13 @@ void RtpsMeter::add(Bytes frame, std::uint32_t size) {
   constexpr std::size_t ip_header_min = 20;
   if (frame.size() < ethernet_header + ip_header_min || number(frame, 12, 2, false) != 0x0800) return other();
   const Bytes ip = frame.subspan(ethernet_header);
-  constexpr std::uint8_t udp = 17;
+  constexpr std::uint8_t icmp = 1, udp = 17, destination_unreachable = 3;
   const std::size_t ip_header = std::size_t{ip[0] & 0x0fu} * 4;
   const std::uint32_t fragment = number(ip, 6, 2, false);
   const std::uint32_t key = number(ip, 14, 2, false) << 16 | number(ip, 4, 2, false);
+  if (ip[9] == icmp && ip.size() > ip_header && ip[ip_header] == destination_unreachable) {
+    return count({.use = RtpsUse::unreachable, .topic = nullptr, .bytes = size}, 1);
+  }
   if (ip[9] != udp) return other();
   if ((fragment & 0x1fff) != 0) {  // not the first: it is what the first one was
     const auto first = fragments_.find(key);

@@ -11,9 +11,16 @@
 
 namespace eciton::bench {
 
-enum class RtpsUse : std::uint8_t { participants, endpoints, liveliness, topics, other };
-inline constexpr std::array<const char*, 5> rtps_use_names{"participants", "endpoints", "liveliness", "topics",
-                                                           "other"};
+enum class RtpsUse : std::uint8_t {
+  participants,
+  endpoints,
+  liveliness,
+  unreachable,  // "nobody listens here": what an announcement to a port that is not open costs besides
+  topics,
+  other
+};
+inline constexpr std::array<const char*, 6> rtps_use_names{"participants", "endpoints", "liveliness",
+                                                           "unreachable",  "topics",    "other"};
 
 struct TrafficCount {
   std::uint64_t packets = 0;

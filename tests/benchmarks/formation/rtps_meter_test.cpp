@@ -107,6 +107,18 @@ TEST(RtpsMeterTest, SharesAPacketsHeadersAmongItsSubmessages) {
   EXPECT_EQ(meter.of(RtpsUse::topics).bytes, both.size() / 2);
 }
 
+TEST(RtpsMeterTest, CountsThatNobodyListensAsDiscovery) {
+  RtpsMeter meter;
+  Bytes refusal = frame(Bytes(60, 0));
+  refusal[14 + 9] = 1;   // ICMP ...
+  refusal[14 + 20] = 3;  // ... destination unreachable
+  add(meter, refusal);
+  EXPECT_EQ(meter.discovery().bytes, refusal.size());
+  refusal[14 + 20] = 8;  // echo request
+  add(meter, refusal);
+  EXPECT_EQ(meter.of(RtpsUse::other).bytes, refusal.size());
+}
+
 TEST(RtpsMeterTest, CountsLaterFragmentsAsTheirFirst) {
   RtpsMeter meter;
   const Bytes first = frame(message(prefix_a, data(sedp_writer, Bytes(1400, 0))), 0x2000);
