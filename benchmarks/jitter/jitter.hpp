@@ -21,7 +21,7 @@ struct JitterOptions {
   std::string dds = "cyclonedds";
   std::uint32_t domain = 97;
   std::uint64_t seed = 1;          // of the confidence interval
-  std::filesystem::path programs;  // where eciton-bench-traffic is
+  std::filesystem::path programs{};  // where eciton-bench-traffic is
 };
 
 /// Throws BadInput before anything starts when a right or a tool is missing.
