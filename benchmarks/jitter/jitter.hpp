@@ -20,7 +20,7 @@ struct JitterOptions {
   bool cyclictest = true;      // false: without the baseline
   std::string dds = "cyclonedds";
   std::uint32_t domain = 97;
-  std::uint64_t seed = 1;          // of the confidence interval
+  std::uint64_t seed = 1;            // of the confidence interval
   std::filesystem::path programs{};  // where eciton-bench-traffic is
 };
 

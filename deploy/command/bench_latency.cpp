@@ -94,9 +94,7 @@ void add_bench_latency(CLI::App& bench, Run& run_chosen) {
   verb.add_option("--programs", measure.programs,
                   "directory of the bench_peer_* programs (default: beside this one)");
   verb.add_option("--seed", measure.seed, "of the confidence intervals")->capture_default_str();
-  verb.add_option("--json", options->files.json, "file for the figures");
-  verb.add_option("--csv", options->files.csv, "file for the raw samples");
-  verb.add_option("--html", options->files.html, "file for the page with distributions");
+  add_report_options(verb, options->files);
   on_chosen(verb, run_chosen, [options, &verb] { return run(*options, verb); });
 }
 
