@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 
 #include "benchmarks/report/charts.hpp"
 #include "benchmarks/report/result.hpp"
@@ -24,16 +23,19 @@ bool well_formed(const std::string& text) {
   return status == 0;
 }
 
-std::vector<std::string> references(const std::string& text) {
-  static const std::regex reference(R"((\b(src|href|srcset|action|data|poster)\s*=)|url\(|@import|//[a-z]|fetch\()");
-  std::vector<std::string> found;
-  for (std::sregex_iterator it(text.begin(), text.end(), reference), end; it != end; ++it) found.push_back(it->str());
-  return found;
-}
-
 std::size_t count_of(const std::string& text, const std::string& part) {
   std::size_t count = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+/// Ways for a page to fetch something.
+std::size_t references(const std::string& text) {
+  std::size_t count = 0;
+  for (const char* way : {" src=", " href=", " srcset=", " action=", " data=", " poster=", "url(", "@import", "//",
+                          "fetch(", "import("}) {
+    count += count_of(text, way);
+  }
   return count;
 }
 
@@ -55,8 +57,8 @@ TEST(PageTest, TheParserWouldHaveSaidSo) {
 }
 
 TEST(PageTest, RefersToNothingOutside) {
-  EXPECT_EQ(references(to_html(made_up_result())), std::vector<std::string>{});
-  EXPECT_EQ(references("<img src=\"https://a.b/c\"/>").size(), 2u);
+  EXPECT_EQ(references(to_html(made_up_result())), 0u);
+  EXPECT_EQ(references("<img src=\"https://a.b/c\"/>"), 2u);
 }
 
 TEST(PageTest, ShowsEachThingThatWasMeasured) {
