@@ -103,25 +103,36 @@ std::optional<BlockReport> Lane::report(Process& of, Duration deadline, const ru
   return std::nullopt;
 }
 
-std::optional<Block> Lane::run(const BlockOrder& order, const runtime::StopFlag& stop) {
+void Lane::prepare(const BlockOrder& order, const runtime::StopFlag& stop) {
+  if (!good()) return;
+  if (stop.requested()) return give_up(interrupted);
+  order_ = order;
+  base_ = std::exchange(next_sequence_, next_sequence_ + order.count);
+  ask(*echo_, command("begin", order, base_), answer_time, stop);
+}
+
+void Lane::send_from(Duration start) {
+  if (!good()) return;
+  const auto period_ns = static_cast<std::int64_t>(1e9 / order_.rate_Hz);
+  ping_->say(command("run", order_, base_) + " " + std::to_string(start.count()) + " " + std::to_string(period_ns) +
+             " " + std::to_string(linger_.count()));
+  latest_end_ = start + Duration{period_ns * order_.count} + linger_;
+}
+
+std::optional<Block> Lane::collect(const runtime::StopFlag& stop) {
   if (!good()) return std::nullopt;
-  if (stop.requested()) {
-    give_up(interrupted);
-    return std::nullopt;
-  }
-  const std::uint32_t base = std::exchange(next_sequence_, next_sequence_ + order.count);
-  if (!ask(*echo_, command("begin", order, base), answer_time, stop)) return std::nullopt;
-  const auto period_ns = static_cast<std::int64_t>(1e9 / order.rate_Hz);
-  ping_->say(command("run", order, base) + " " + std::to_string(monotonic_now().count() + 1'000'000) + " " +
-             std::to_string(period_ns) + " " + std::to_string(linger_.count()));
-  const Duration planned = Duration{period_ns * order.count} + linger_;
-  Block block;
-  auto ping = report(*ping_, monotonic_now() + planned + answer_time, stop);
+  auto ping = report(*ping_, latest_end_ + answer_time, stop);
   if (!ping) return std::nullopt;
   echo_->say("end");
   auto echo = report(*echo_, monotonic_now() + answer_time, stop);
   if (!echo) return std::nullopt;
   return Block{std::move(*ping), std::move(*echo)};
+}
+
+std::optional<Block> Lane::run(const BlockOrder& order, const runtime::StopFlag& stop) {
+  prepare(order, stop);
+  send_from(monotonic_now() + std::chrono::milliseconds(1));
+  return collect(stop);
 }
 
 }  // namespace eciton::bench

@@ -43,7 +43,12 @@ class Lane {
   void warm_up(BlockOrder order, Duration deadline, const runtime::StopFlag& stop);
   void give_up(const std::string& why);
 
-  /// nullopt: interrupted or broken, see trouble().
+  /// A block, in three steps, so that lanes can be measured side by side, sample by sample in turn. Each does nothing
+  /// once the lane is broken or the run interrupted: see trouble().
+  void prepare(const BlockOrder& order, const runtime::StopFlag& stop);
+  void send_from(Duration start);  // the first planned instant
+  std::optional<Block> collect(const runtime::StopFlag& stop);
+  /// All three.
   std::optional<Block> run(const BlockOrder& order, const runtime::StopFlag& stop);
 
   bool good() const { return trouble_.empty(); }
@@ -60,6 +65,9 @@ class Lane {
   std::optional<Process> ping_, echo_;
   std::string trouble_;
   std::uint32_t next_sequence_ = 1;
+  BlockOrder order_;
+  std::uint32_t base_ = 0;
+  Duration latest_end_{};                             // of the samples under way
   Duration linger_ = std::chrono::milliseconds(500);  // for the last answers of a block; shorter once known
 };
 

@@ -1,4 +1,5 @@
-// Lanes open together, cells and lanes take turns in short blocks, forward and backward.
+// Lanes open together; cells and teams of lanes take turns in short blocks, forward and backward. Ours and the native
+// one that it is held against are a team: they run at once, sample by sample in turn, so that both have one weather.
 #include "benchmarks/latency/measure.hpp"
 
 #include <poll.h>
@@ -135,18 +136,49 @@ class Run {
   }
   bool over(std::size_t round) const { return options_.quick && round % 2 == 0 && elapsed_s() > quick_s; }
 
-  void measure_cell(std::size_t c, std::size_t round, double left_s) {
-    for (std::size_t k = 0; k < lanes_.size(); ++k) {
-      const std::size_t l = round % 2 == 0 ? k : lanes_.size() - 1 - k;
-      Stream& stream = streams_[c * lanes_.size() + l];
-      if (!takes_part(stream, round)) continue;
-      ++stream.blocks_asked;
-      if (!lanes_[l]->good()) continue;
-      progress_(round, plan_.rounds, left_s, stream.label + ", " + std::to_string(stream.cell.bytes) + " B");
-      const auto count = static_cast<std::uint32_t>(std::max(1.0, options_.block_s * stream.cell.rate_Hz));
-      if (const auto block = lanes_[l]->run({stream.cell.bytes, count, stream.cell.rate_Hz}, stop_)) {
-        stream.add(*block, began_.count());
+  /// Lanes that follow each other and are compared: of one vendor at both ends, and one delivery.
+  std::vector<std::vector<std::size_t>> teams() const {
+    std::vector<std::vector<std::size_t>> all;
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      const LaneSpec& spec = lanes_[l]->spec();
+      const bool joins = l > 0 && !spec.vendor.empty() && lanes_[l - 1]->spec().vendor == spec.vendor &&
+                         lanes_[l - 1]->spec().delivery == spec.delivery;
+      if (joins) {
+        all.back().push_back(l);
+      } else {
+        all.push_back({l});
       }
+    }
+    return all;
+  }
+
+  void measure_cell(std::size_t c, std::size_t round, double left_s) {
+    std::vector<std::vector<std::size_t>> turns = teams();
+    if (round % 2 == 1) {
+      std::reverse(turns.begin(), turns.end());
+      for (auto& team : turns) std::reverse(team.begin(), team.end());
+    }
+    for (const auto& team : turns) {
+      if (!takes_part(streams_[c * lanes_.size() + team.front()], round)) continue;
+      const Stream& first = streams_[c * lanes_.size() + team.front()];
+      progress_(round, plan_.rounds, left_s, first.label + ", " + std::to_string(first.cell.bytes) + " B");
+      measure_team(c, team);
+    }
+  }
+
+  void measure_team(std::size_t c, const std::vector<std::size_t>& team) {
+    const Cell& cell = cells_[c];
+    const auto count = static_cast<std::uint32_t>(std::max(1.0, options_.block_s * cell.rate_Hz));
+    for (const std::size_t l : team) lanes_[l]->prepare({cell.bytes, count, cell.rate_Hz}, stop_);
+    Duration start = monotonic_now() + std::chrono::milliseconds(2);
+    for (const std::size_t l : team) {
+      lanes_[l]->send_from(start);
+      start += from_s(1 / cell.rate_Hz / static_cast<double>(team.size()));
+    }
+    for (const std::size_t l : team) {
+      Stream& stream = streams_[c * lanes_.size() + l];
+      ++stream.blocks_asked;
+      if (const auto block = lanes_[l]->collect(stop_)) stream.add(*block, began_.count());
     }
   }
 

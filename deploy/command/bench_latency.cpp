@@ -21,10 +21,10 @@ struct Options {
 /// What --quick stands for, where nothing else was said.
 void hasten(bench::LatencyOptions& options, const CLI::App& verb) {
   if (!options.quick) return;
-  if (verb.count("--rates") == 0) options.rates_Hz = {2000};
+  if (verb.count("--rates") == 0) options.rates_Hz = {1500};
   if (verb.count("--duration") == 0) options.duration_s = 20;  // ends by time
   // Many short blocks: neighbours share their weather, and confidence grows with their number.
-  if (verb.count("--block") == 0) options.block_s = 0.04;
+  if (verb.count("--block") == 0) options.block_s = 0.05;
 }
 
 int run(Options options, const CLI::App& verb) {
