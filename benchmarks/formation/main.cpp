@@ -21,6 +21,7 @@ int run(int argc, char** argv) {
   app.add_option("--pair", pairs, "cyclonedds+fastdds");
   app.add_option("--pairs-at", options.pairs_at);
   app.add_option("--trials", options.trials);
+  app.add_option("--sessions", options.sessions);
   app.add_option("--priority", options.realtime_priority);
   app.add_option("--discovery-modules", options.discovery_modules);
   app.add_option("--discovery-dds", options.discovery_vendors);
