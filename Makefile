@@ -6,7 +6,7 @@ DDS ?=
 ARGS ?=
 JOBS ?= $(shell nproc)
 
-.PHONY: demo test build nightly format format-check clean install-deps help
+.PHONY: demo test build benchmarks nightly format format-check clean install-deps help
 
 demo: install-deps
 	cmake --preset release
@@ -21,6 +21,11 @@ test: install-deps
 build: install-deps
 	cmake --preset release
 	cmake --build --preset release --target programs
+
+# What `eciton bench` measures with.
+benchmarks: install-deps
+	cmake --preset release
+	cmake --build --preset release --target bench_programs
 
 # More seeds and longer flights: tests read ECITON_NIGHTLY, and those of configuration `nightly` run only here.
 nightly: install-deps
@@ -45,4 +50,4 @@ install-deps:
 help:
 	@echo "make demo [DDS=fastdds|cyclonedds] [ARGS=...]   fly the demo"
 	@echo "make test [ARGS='-R name']                      build and run the tests"
-	@echo "make build | nightly | format | format-check | clean | install-deps"
+	@echo "make build | benchmarks | nightly | format | format-check | clean | install-deps"

@@ -29,7 +29,11 @@ ProgramOptions parse_options(int argc, char** argv, const std::string& purpose, 
       ->allow_extra_args(false);
   app.add_option("--set", options.assignments, "key=value, over the files")->allow_extra_args(false);
   app.add_option("--log", options.log_level, "trace, debug, info, warn, error or off");
-  if (with_names) app.add_option("names", options.names, "services to run")->required();
+  if (with_names) {
+    app.add_option("names", options.names, "services to run")->required();
+    app.add_option("--checkpoints", options.checkpoints, "directory where services that died left their state")
+        ->check(CLI::ExistingDirectory);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

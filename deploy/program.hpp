@@ -16,6 +16,7 @@ struct ProgramOptions {
   std::vector<std::string> assignments;  // --set key=value
   std::string log_level = "info";
   std::vector<std::string> names;  // services to run
+  std::string checkpoints;         // directory of their checkpoints; empty: none
 };
 
 /// Throws BadInput; prints help and exits with 0 when asked for it.

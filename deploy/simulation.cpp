@@ -1,6 +1,10 @@
 // Puts a fleet together in one process.
 #include "deploy/simulation.hpp"
 
+#include <algorithm>
+#include <map>
+
+#include "core/base/contract.hpp"
 #include "hal/sim/direct_link.hpp"
 #include "hal/sim/make_devices.hpp"
 
@@ -61,7 +65,26 @@ struct Simulation::SimulatedModule {
   hal::SenseService sense;
   hal::ActService act;
   std::vector<std::unique_ptr<runtime::Service>> services;
+  std::map<std::string, std::vector<std::byte>> checkpoints;
   runtime::SimModule* runs = nullptr;
+
+  /// What a service that was started again runs in: a process of its own.
+  struct Process {
+    Process(const ModuleConfig& module_config, const std::string& name)
+        : ring(module_config.module_participant(name + " again")),
+          swarm(module_config.swarm_participant(name + " again"), &ring.waker()) {}
+    bus::Participant ring, swarm;
+    std::unique_ptr<runtime::Service> service;
+    runtime::SimModule* runs = nullptr;
+  };
+  std::vector<std::unique_ptr<Process>> restarted;
+
+  runtime::Service& find(const std::string& name) {
+    const auto found =
+        std::find_if(services.begin(), services.end(), [&](const auto& s) { return s->name() == name; });
+    ECITON_EXPECT(found != services.end(), "a service that this module has, and that was not killed before");
+    return **found;
+  }
 };
 
 Simulation::Simulation(const SimulationConfig& config) : config_(config) {
@@ -123,9 +146,34 @@ void Simulation::add_module(std::uint32_t id) {
 }
 
 void Simulation::suspend(std::size_t module, const std::string& service) {
-  for (const auto& candidate : modules_[module]->services) {
-    if (candidate->name() == service) modules_[module]->runs->suspend(*candidate, true);
+  modules_[module]->runs->suspend(modules_[module]->find(service), true);
+}
+
+void Simulation::kill(std::size_t module, const std::string& service) {
+  SimulatedModule& m = *modules_[module];
+  runtime::Service& killed = m.find(service);
+  runtime::StateWriter counting({});
+  killed.save_state(counting);
+  m.checkpoints[service].resize(counting.size());
+  runtime::StateWriter writer(m.checkpoints[service]);
+  killed.save_state(writer);
+  m.runs->remove(killed);
+  std::erase_if(m.services, [&](const auto& other) { return other->name() == service; });
+}
+
+void Simulation::restart(std::size_t module, const std::string& service, bool from_checkpoint) {
+  SimulatedModule& m = *modules_[module];
+  m.config.radio.incarnation = m.config.docking.incarnation = incarnation_at(now());
+  auto process = std::make_unique<SimulatedModule::Process>(m.config, service);
+  process->service = make_service(service, m.config, process->ring, &process->swarm);
+  if (from_checkpoint) {
+    runtime::StateReader reader(m.checkpoints[service]);
+    process->service->load_state(reader);
   }
+  process->runs =
+      &executor_->add_module({.module_id = m.config.id, .process = service}, {&process->ring, &process->swarm});
+  process->runs->add(*process->service);
+  m.restarted.push_back(std::move(process));
 }
 
 bus::Participant& Simulation::listener(std::size_t module) { return *modules_[module]->listener; }

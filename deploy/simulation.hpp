@@ -51,6 +51,10 @@ class Simulation {
   bus::Participant& listener(std::size_t module);
   /// As if a service's process hung: it steps no more.
   void suspend(std::size_t module, const std::string& service);
+  /// As if its process were killed; what its checkpoint holds is left.
+  void kill(std::size_t module, const std::string& service);
+  /// As if its supervisor started it again, with what the kill left, or without. Each service once.
+  void restart(std::size_t module, const std::string& service, bool from_checkpoint = true);
   bus::sim_network::Network& swarm() { return bus::sim_network::Network::of(config_.module.swarm_ring.domain); }
   std::size_t size() const { return config_.world.modules.size(); }
   std::uint32_t id(std::size_t module) const { return config_.world.modules[module].id; }

@@ -23,7 +23,8 @@ struct DiscoveryCase {
 /// Over all modules; Ethernet frames with their headers.
 struct DiscoveryCount {
   double seconds = 0;
-  TrafficCount total, discovery, participants, endpoints, liveliness, unreachable, topics, beacons, multicast, other;
+  TrafficCount total{}, discovery{}, participants{}, endpoints{}, liveliness{}, unreachable{};
+  TrafficCount topics{}, beacons{}, multicast{}, other{};
 };
 
 struct DiscoveryFigures {

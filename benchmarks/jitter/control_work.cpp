@@ -17,7 +17,8 @@ ControlWork::ControlWork(bus::Participant& ring, std::uint32_t module_id, Durati
       control_(ring, {.module_id = module_id}, robot::legion(false)),
       state_(ring.create_writer(topics::module_state)),
       mode_(ring.create_writer(topics::mode_request)),
-      goal_(ring.create_writer(topics::flight_goal)) {
+      goal_(ring.create_writer(topics::flight_goal)),
+      rotors_(ring.create_writer(topics::rotor_state)) {
   late_us_.reserve(at_most);
 }
 
@@ -42,6 +43,7 @@ void ControlWork::fly(TimePoint now) noexcept {
   state.p_WM_m = {0, 0, height_m};
   state.q_WM = {1, 0, 0, 0};
   state_.write(state);
+  rotors_.write({.module_id = module_id_, .stamp_ns = to_ns(now), .armed = flies_, .battery_V = 0, .rotors = {}});
   if (flies_) return;
   if (steps_ % 10 == 1) {
     msg::ModeRequest arm;

@@ -34,6 +34,7 @@ class ControlWork final : public runtime::Service {
   bus::Writer<msg::ModuleState> state_;
   bus::Writer<msg::ModeRequest> mode_;
   bus::Writer<msg::FlightGoal> goal_;
+  bus::Writer<msg::RotorState> rotors_;
   const runtime::ServiceGroup::Entry* entry_ = nullptr;
   std::vector<double> late_us_;
   std::uint64_t steps_ = 0;

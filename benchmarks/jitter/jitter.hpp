@@ -20,8 +20,8 @@ struct JitterOptions {
   bool cyclictest = true;      // false: without the baseline
   std::string dds = "cyclonedds";
   std::uint32_t domain = 97;
-  std::uint64_t seed = 1;          // of the confidence interval
-  std::filesystem::path programs;  // where eciton-bench-traffic is
+  std::uint64_t seed = 1;            // of the confidence interval
+  std::filesystem::path programs{};  // where eciton-bench-traffic is
 };
 
 /// Throws BadInput before anything starts when a right or a tool is missing.

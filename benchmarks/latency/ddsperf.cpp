@@ -14,9 +14,9 @@ namespace eciton::bench {
 namespace {
 
 /// As the plugin opens a domain, as far as it bears on a round trip.
-std::string configuration(const LatencyOptions& options) {
+std::string configuration(const LatencyOptions& options, const Place& place) {
   std::string xml = "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"" +
-                    options.network_interface + "\" multicast=\"" + (options.peers.empty() ? "true" : "false") +
+                    place.network_interface + "\" multicast=\"" + (options.peers.empty() ? "true" : "false") +
                     "\"/></Interfaces><AllowMulticast>" + (options.peers.empty() ? "spdp" : "false") +
                     "</AllowMulticast></General>";
   if (!options.peers.empty()) {
@@ -27,7 +27,8 @@ std::string configuration(const LatencyOptions& options) {
   return xml + "<Internal><MultipleReceiveThreads>false</MultipleReceiveThreads></Internal></Domain></CycloneDDS>";
 }
 
-ProgramSpec end_of(const LatencyOptions& options, const std::string& program, const DdsperfRun& run, bool ping) {
+ProgramSpec end_of(const LatencyOptions& options, const Place& place, const std::string& program,
+                   const DdsperfRun& run, bool ping) {
   ProgramSpec spec;
   spec.path = program;
   spec.arguments = {"-i", std::to_string(options.domain + 20)};
@@ -40,8 +41,9 @@ ProgramSpec end_of(const LatencyOptions& options, const std::string& program, co
     spec.arguments.insert(spec.arguments.end(), {"-D", "3", "pong"});
   }
   spec.arguments.emplace_back(run.delivery == "wake" ? "waitset" : "listener");
-  spec.environment["CYCLONEDDS_URI"] = configuration(options);
-  spec.footing = {ping ? options.ping_host : options.echo_host, options.pin ? (ping ? 0 : 1) : -1, options.priority};
+  spec.environment["CYCLONEDDS_URI"] = configuration(options, place);
+  spec.footing = footing(options, place, ping);
+  spec.quiet = true;
   return spec;
 }
 
@@ -56,8 +58,8 @@ std::optional<DdsperfWindow> parse_ddsperf(const std::string& line) {
                   &half.mean_us, &min_us, &half.p50_us, &half.p90_us, &half.p99_us, &half.max_us, &half.count) != 7) {
     return std::nullopt;
   }
-  return DdsperfWindow{2 * half.mean_us, 2 * half.p50_us, 2 * half.p90_us, 2 * half.p99_us, 2 * half.max_us,
-                       half.count};
+  return DdsperfWindow{2 * half.mean_us, 2 * half.p50_us, 2 * half.p90_us,
+                       2 * half.p99_us,  2 * half.max_us, half.count};
 }
 
 std::string find_ddsperf() {
@@ -70,11 +72,11 @@ std::string find_ddsperf() {
   return {};
 }
 
-Status measure_ddsperf(const LatencyOptions& options, const std::string& program, DdsperfRun& run,
+Status measure_ddsperf(const LatencyOptions& options, const Place& place, const std::string& program, DdsperfRun& run,
                        const runtime::StopFlag& stop) {
-  Result<Process> pong = Process::start(end_of(options, program, run, false));
+  Result<Process> pong = Process::start(end_of(options, place, program, run, false));
   if (!pong) return pong.error();
-  Result<Process> ping = Process::start(end_of(options, program, run, true));
+  Result<Process> ping = Process::start(end_of(options, place, program, run, true));
   if (!ping) return ping.error();
   const Duration deadline = monotonic_now() + std::chrono::seconds(3);
   for (;;) {

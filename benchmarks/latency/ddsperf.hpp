@@ -30,7 +30,7 @@ struct DdsperfRun {
 std::string find_ddsperf();
 
 /// One second of it, added to `run`; the Error says why nothing came of it.
-Status measure_ddsperf(const LatencyOptions& options, const std::string& program, DdsperfRun& run,
+Status measure_ddsperf(const LatencyOptions& options, const Place& place, const std::string& program, DdsperfRun& run,
                        const runtime::StopFlag& stop);
 
 }  // namespace eciton::bench

@@ -21,15 +21,16 @@ class Run {
 
   Measured measure() {
     std::signal(SIGPIPE, SIG_IGN);  // of a peer that died: its silence tells
-    for (const std::string& qos : options_.qos) {
+    for (const std::string& over : options_.over) {
       if (stop_.requested()) break;
-      cells_.clear();
-      for (const Cell& cell : plan_.cells) {
-        if (cell.qos == qos) cells_.push_back(cell);
+      const Result<Venue> venue = Venue::open(over, options_);
+      if (!venue) {
+        note(over + ": " + venue.error().message);
+        measured_.partial = true;
+        continue;
       }
-      open(qos);
-      measure_rounds();
-      finish();
+      place_ = venue->place();
+      for (const std::string& qos : options_.qos) measure(over, qos);
     }
     measured_.interrupted = stop_.requested();
     measured_.partial = measured_.partial || measured_.interrupted;
@@ -37,12 +38,23 @@ class Run {
   }
 
  private:
+  void measure(const std::string& over, const std::string& qos) {
+    if (stop_.requested()) return;
+    cells_.clear();
+    for (const Cell& cell : plan_.cells) {
+      if (cell.qos == qos && cell.over == over) cells_.push_back(cell);
+    }
+    open(qos);
+    measure_rounds();
+    finish();
+  }
+
   double elapsed_s() const { return to_s(monotonic_now() - began_); }
 
   void open(const std::string& qos) {
     progress_(0, 1, 0, "starting peers");
     lanes_.clear();
-    for (LaneSpec& spec : lanes_of(options_, qos, measured_.notes)) {
+    for (LaneSpec& spec : lanes_of(options_, place_, qos, measured_.notes)) {
       lanes_.push_back(std::make_unique<Lane>(std::move(spec)));
     }
     const Duration deadline = monotonic_now() + from_s(options_.patience_s);
@@ -91,6 +103,7 @@ class Run {
     runs_.clear();
     if (ddsperf_.empty()) {
       note("missing: ddsperf is not in the path; it comes with cyclonedds-tools");
+      measured_.missing = true;
       return;
     }
     for (const Cell& cell : cells_) {
@@ -109,13 +122,16 @@ class Run {
     const std::size_t all = plan_.rounds;
     std::size_t round = 0;
     const double began_s = elapsed_s();
-    for (; round < all && !over(round) && !stop_.requested(); ++round) {
+    for (; round < all && !over(round) && !stop_.requested() && any_good(); ++round) {
       const double per_round_s = round == 0 ? 0 : (elapsed_s() - began_s) / static_cast<double>(round);
       double left_s = per_round_s * static_cast<double>(all - round);
       if (options_.quick) left_s = std::min(left_s, quick_s - elapsed_s());
       for (std::size_t c = 0; c < cells_.size(); ++c) measure_cell(c, round, left_s);
       if (round % std::max<std::size_t>(all / 4, 1) == 1) measure_all_ddsperf();
     }
+  }
+  bool any_good() const {
+    return std::any_of(lanes_.begin(), lanes_.end(), [](const auto& lane) { return lane->good(); });
   }
   bool over(std::size_t round) const { return options_.quick && round % 2 == 0 && elapsed_s() > quick_s; }
 
@@ -138,8 +154,10 @@ class Run {
     for (DdsperfRun& run : runs_) {
       if (stop_.requested() || ddsperf_.empty()) return;
       progress_(0, plan_.rounds, 0, "ddsperf, " + run.delivery);
-      if (const Status done = measure_ddsperf(options_, ddsperf_, run, stop_); !done && !stop_.requested()) {
-        note("ddsperf, " + run.delivery + ", " + std::to_string(run.cell.bytes) + " B: " + done.error().message);
+      if (const Status done = measure_ddsperf(options_, place_, ddsperf_, run, stop_); !done && !stop_.requested()) {
+        note("ddsperf, " + run.cell.over + ": " + done.error().message);
+        measured_.partial = true;
+        ddsperf_.clear();  // it will not do better the next time
       }
     }
   }
@@ -168,6 +186,7 @@ class Run {
   const runtime::StopFlag& stop_;
   const Progress& progress_;
   Duration began_;
+  Place place_;
   std::vector<Cell> cells_;
   std::vector<std::unique_ptr<Lane>> lanes_;
   std::vector<Stream> streams_;  // cell by cell, in each as lanes_

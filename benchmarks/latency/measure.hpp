@@ -17,7 +17,8 @@ struct Measured {
   std::vector<DdsperfRun> ddsperf;
   std::vector<std::string> notes;
   bool interrupted = false;
-  bool partial = false;
+  bool partial = false;  // something broke, or there was an interruption
+  bool missing = false;  // a baseline that was asked for
 };
 
 /// finished, all, seconds left, what is being done.

@@ -49,8 +49,9 @@ const eciton_plugin plugin = [] {
   made.writer_write = write;
   made.writer_matched = [](eciton_writer*) { return 1u; };
   made.reader_create = [](eciton_participant*, const char*, const eciton_type*, const eciton_qos*,
-                          eciton_delivery delivery, char*,
-                          uint32_t) { return the_reader = new eciton_reader{delivery, false, 0, {}}; };
+                          eciton_delivery delivery, char*, uint32_t) {
+    return the_reader = new eciton_reader{delivery, false, 0, {}};
+  };
   made.reader_destroy = [](eciton_reader* reader) {
     the_reader = nullptr;
     delete reader;

@@ -1,5 +1,6 @@
 // The framework's own part of a sample's way: write into a plugin that keeps only the bytes, take from it, and the
-// whole way between two participants over sim_network. In batches: the clock costs as much as a step of what it times.
+// whole way between two participants over sim_network. In batches: the clock costs as much as a step of what it
+// times.
 #include <dlfcn.h>
 
 #include <algorithm>

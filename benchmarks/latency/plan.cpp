@@ -41,7 +41,7 @@ fs::path own_directory() { return fs::read_symlink("/proc/self/exe").parent_path
 /// The programs of a run and what they are all started with.
 class Programs {
  public:
-  explicit Programs(const LatencyOptions& options) : options_(options) {
+  Programs(const LatencyOptions& options, const Place& place) : options_(options), place_(place) {
     directory_ = options.programs.empty() ? own_directory() : fs::path(options.programs);
     const fs::path counter = own_directory().parent_path() / "lib" / "libeciton_bench_heap_counter.so";
     if (fs::exists(counter)) environment_["LD_PRELOAD"] = counter.string();
@@ -54,15 +54,15 @@ class Programs {
                    std::uint32_t domain) const {
     ProgramSpec spec;
     spec.path = path(transport);
-    spec.arguments = {"--role", role == Role::ping ? "ping" : "echo", "--domain", std::to_string(domain), "--run",
-                      "bench" + std::to_string(::getpid()), "--interface", options_.network_interface};
+    spec.arguments = {"--role", role == Role::ping ? "ping" : "echo", "--domain",    std::to_string(domain),
+                      "--run",  "bench" + std::to_string(::getpid()), "--interface", place_.network_interface};
     for (const std::string& address : options_.peers) {
       spec.arguments.emplace_back("--peer");
       spec.arguments.push_back(address);
     }
     spec.arguments.insert(spec.arguments.end(), arguments.begin(), arguments.end());
     spec.environment = environment_;
-    spec.footing = footing(role);
+    spec.footing = footing(options_, place_, role == Role::ping);
     return spec;
   }
 
@@ -72,26 +72,21 @@ class Programs {
     spec.environment = environment_;
     const fs::path plugins = own_directory().parent_path() / "lib";
     spec.environment["ECITON_PLUGIN_PATH"] = (plugins / "bench").string() + ":" + plugins.string();
-    spec.footing = footing(Role::ping);
+    spec.footing = footing(options_, place_, true);
     return spec;
-  }
-
-  Footing footing(Role role) const {
-    const bool ping = role == Role::ping;
-    const int cpu = options_.pin ? (ping ? 0 : 1) : -1;
-    return {ping ? options_.ping_host : options_.echo_host, cpu, options_.priority};
   }
 
  private:
   const LatencyOptions& options_;
+  const Place& place_;
   fs::path directory_;
   std::map<std::string, std::string> environment_;
 };
 
 class LaneList {
  public:
-  LaneList(const LatencyOptions& options, const std::string& qos, std::vector<std::string>& notes)
-      : options_(options), programs_(options), reliable_(qos == "command"), notes_(notes) {}
+  LaneList(const LatencyOptions& options, const Place& place, const std::string& qos, std::vector<std::string>& notes)
+      : options_(options), programs_(options, place), reliable_(qos == "command"), notes_(notes) {}
 
   std::vector<LaneSpec> make() {
     // Ours and the native one that it is held against stand next to each other.
@@ -191,15 +186,11 @@ Status check_numbers(const LatencyOptions& options) {
   return ok();
 }
 
-/// Real-time and pinned where that may be; a namespace that is not there is an error.
+/// Real-time and pinned where that may be.
 Status settle_footing(LatencyOptions& options, std::vector<std::string>& notes) {
   const bool default_priority = options.priority < 0;
   if (default_priority) options.priority = 20;
   if (std::thread::hardware_concurrency() < 2) options.pin = false;
-  for (const Role role : {Role::ping, Role::echo}) {
-    const Status space = check({role == Role::ping ? options.ping_host : options.echo_host, -1, 0});
-    if (!space) return space;
-  }
   if (options.pin && !(check({"", 0, 0}) && check({"", 1, 0}))) {
     options.pin = false;
     notes.emplace_back("processors 0 and 1 are not both ours: peers run wherever the scheduler puts them");
@@ -221,41 +212,56 @@ const std::vector<std::string>& latency_baselines() {
 
 std::string Cell::suffix() const {
   std::string text = std::to_string(bytes);
-  if (!plain) text += "." + qos + "." + std::to_string(std::lround(rate_Hz));
+  if (!plain) text += "." + qos + "." + std::to_string(std::lround(rate_Hz)) + "." + over;
   return text;
 }
 
 Result<Plan> make_plan(LatencyOptions& options) {
   Plan plan;
-  const Status checks[] = {
-      check_words("--vendors", options.vendors, {"cyclonedds", "fastdds"}),
-      check_words("--qos", options.qos, {"sensor", "command"}),
-      check_words("--modes", options.deliveries, {"wake", "inline"}),
-      check_words("--baselines", options.baselines, latency_baselines()), check_numbers(options),
-      settle_footing(options, plan.notes)};
+  const Status checks[] = {check_words("--vendors", options.vendors, {"cyclonedds", "fastdds"}),
+                           check_words("--qos", options.qos, {"sensor", "command"}),
+                           check_words("--modes", options.deliveries, {"wake", "inline"}),
+                           check_words("--baselines", options.baselines, latency_baselines()),
+                           check_numbers(options),
+                           check_words("--over", options.over, {"loopback", "hosts", "impaired"}),
+                           settle_footing(options, plan.notes)};
   for (const Status& each : checks) {
     if (!each) return each.error();
   }
-  for (const std::string& qos : options.qos) {
-    for (const double rate_Hz : options.rates_Hz) {
-      for (const std::uint32_t bytes : options.bytes) {
-        plan.cells.push_back({bytes, rate_Hz, qos, qos == options.qos.front() && rate_Hz == options.rates_Hz.front()});
+  for (const std::string& over : options.over) {
+    if (const Status venue = check_venue(over, options); !venue)
+      return Error{"--over " + over + ": " + venue.error().message};
+    for (const std::string& qos : options.qos) {
+      for (const double rate_Hz : options.rates_Hz) {
+        const bool plain =
+            qos == options.qos.front() && rate_Hz == options.rates_Hz.front() && over == options.over.front();
+        for (const std::uint32_t bytes : options.bytes) plan.cells.push_back({bytes, rate_Hz, qos, over, plain});
       }
     }
   }
   plan.rounds = std::max<std::size_t>(2, std::lround(options.duration_s / options.block_s));
-  const std::vector<LaneSpec> lanes = lanes_of(options, options.qos.front(), plan.notes);
+  const std::vector<LaneSpec> lanes = lanes_of(options, {}, options.qos.front(), plan.notes);
+  plan.missing = std::any_of(plan.notes.begin(), plan.notes.end(),
+                             [](const std::string& note) { return note.starts_with("missing: "); });
   if (!fs::exists(lanes.front().ping.path)) {
     return Error{lanes.front().ping.path + " is not there: it is built with the benchmarks"};
   }
   return plan;
 }
 
-ProgramSpec overhead_program(const LatencyOptions& options) { return Programs(options).overhead(); }
+ProgramSpec overhead_program(const LatencyOptions& options) {
+  const Place here;
+  return Programs(options, here).overhead();
+}
 
-std::vector<LaneSpec> lanes_of(const LatencyOptions& options, const std::string& qos,
+Footing footing(const LatencyOptions& options, const Place& place, bool ping) {
+  const int cpu = options.pin ? (ping ? 0 : 1) : -1;
+  return {ping ? place.ping_namespace : place.echo_namespace, cpu, options.priority};
+}
+
+std::vector<LaneSpec> lanes_of(const LatencyOptions& options, const Place& place, const std::string& qos,
                                std::vector<std::string>& notes) {
-  return LaneList(options, qos, notes).make();
+  return LaneList(options, place, qos, notes).make();
 }
 
 }  // namespace eciton::bench

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "benchmarks/latency/lane.hpp"
+#include "benchmarks/latency/place.hpp"
 #include "core/base/result.hpp"
 
 namespace eciton::bench {
@@ -21,14 +22,16 @@ struct LatencyOptions {
   double block_s = 0.1;
   bool quick = false;
   std::string network_interface = "lo";
-  std::string ping_host, echo_host;    // network namespaces; empty: ours
-  std::vector<std::string> peers;      // addresses for discovery; none: multicast
-  std::uint32_t domain = 60;           // of the first lane; each next one has the next
-  int priority = -1;                   // of all peers, SCHED_FIFO; 0: SCHED_OTHER; -1: 20 where it may be
-  bool pin = true;                     // pings on the first processor, echoes on the second
-  double patience_s = 10;              // for peers to appear
-  std::uint64_t seed = 1;              // of the bootstrap
-  std::string programs;                // directory of the peers; empty: beside this program
+  std::vector<std::string> over{"loopback"};
+  std::vector<std::string> hosts;  // two network namespaces for "hosts" and "impaired"; none: a net of our own
+  std::vector<std::string> impairment{"delay=10ms", "jitter=3ms", "loss=5%"};  // as `eciton net set` takes it
+  std::vector<std::string> peers;  // addresses for discovery; none: multicast
+  std::uint32_t domain = 60;       // of the first lane; each next one has the next
+  int priority = -1;               // of all peers, SCHED_FIFO; 0: SCHED_OTHER; -1: 20 where it may be
+  bool pin = true;                 // pings on the first processor, echoes on the second
+  double patience_s = 10;          // for peers to appear
+  std::uint64_t seed = 1;          // of the bootstrap
+  std::string programs;            // directory of the peers; empty: beside this program
 };
 
 /// The allowed words, for messages.
@@ -38,21 +41,25 @@ const std::vector<std::string>& latency_baselines();
 struct Cell {
   std::uint32_t bytes = 0;
   double rate_Hz = 0;
-  std::string qos;
+  std::string qos, over;
+  bool plain = true;           // the first rate, class and place: metric names leave them out
   std::string suffix() const;  // "256": as metric names end
-  bool plain = true;           // the first rate and class: metric names leave them out
 };
 
 struct Plan {
   std::vector<Cell> cells;
-  std::size_t rounds = 0;  // blocks of each lane in each cell
+  std::size_t rounds = 0;          // blocks of each lane in each cell
   std::vector<std::string> notes;  // what cannot be measured here, and why
+  bool missing = false;            // a baseline that was asked for
 };
 
 /// Checks the options against each other and the machine; the Error is for exit status 2.
 Result<Plan> make_plan(LatencyOptions& options);
 /// The lanes of one QoS class. Baselines whose programs are not there become notes.
-std::vector<LaneSpec> lanes_of(const LatencyOptions& options, const std::string& qos, std::vector<std::string>& notes);
+std::vector<LaneSpec> lanes_of(const LatencyOptions& options, const Place& place, const std::string& qos,
+                               std::vector<std::string>& notes);
+/// What a program of one role is started with.
+Footing footing(const LatencyOptions& options, const Place& place, bool ping);
 
 /// The program of overhead.hpp.
 ProgramSpec overhead_program(const LatencyOptions& options);

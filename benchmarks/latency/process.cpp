@@ -22,8 +22,6 @@ namespace {
 
 constexpr Duration farewell = std::chrono::milliseconds(500);
 
-std::string namespace_path(const std::string& name) { return "/run/netns/" + name; }
-
 /// In the child, where nothing may allocate: errno of what failed, 0: none did.
 int stand(const Footing& footing, int network_namespace) {
   if (network_namespace >= 0 && ::setns(network_namespace, CLONE_NEWNET) != 0) return errno;
@@ -73,26 +71,14 @@ struct Words {
 }  // namespace
 
 Status check(const Footing& footing) {
-  if (!footing.network_namespace.empty() && ::access(namespace_path(footing.network_namespace).c_str(), F_OK) != 0) {
-    return Error{"there is no network namespace '" + footing.network_namespace +
-                 "'; 'ip netns list' shows those that are, 'eciton net up' makes hosts"};
-  }
   const pid_t probe = ::fork();
-  if (probe == 0) {
-    const int space = footing.network_namespace.empty()
-                          ? -1
-                          : ::open(namespace_path(footing.network_namespace).c_str(), O_RDONLY | O_CLOEXEC);
-    ::_exit(stand(footing, space));
-  }
+  if (probe == 0) ::_exit(stand(footing, -1));
   int status = 0;
   if (probe < 0 || ::waitpid(probe, &status, 0) != probe) return Error{"no process can be started"};
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     std::string what = footing.priority > 0 ? "SCHED_FIFO at priority " + std::to_string(footing.priority) : "";
     if (footing.cpu >= 0) what += std::string(what.empty() ? "" : ", ") + "processor " + std::to_string(footing.cpu);
-    if (!footing.network_namespace.empty()) {
-      what += std::string(what.empty() ? "" : ", ") + "network namespace " + footing.network_namespace;
-    }
-    return Error{"no right to or no such thing as " + what + ": " + std::strerror(WEXITSTATUS(status))};
+    return Error{"no right to, or no such thing as, " + what + ": " + std::strerror(WEXITSTATUS(status))};
   }
   return ok();
 }
@@ -102,8 +88,8 @@ Result<Process> Process::start(const ProgramSpec& spec) {
   process.name_ = spec.path.substr(spec.path.rfind('/') + 1);
   int space = -1;
   if (!spec.footing.network_namespace.empty()) {
-    space = ::open(namespace_path(spec.footing.network_namespace).c_str(), O_RDONLY | O_CLOEXEC);
-    if (space < 0) return Error{process.name_ + ": no network namespace '" + spec.footing.network_namespace + "'"};
+    space = ::open(spec.footing.network_namespace.c_str(), O_RDONLY | O_CLOEXEC);
+    if (space < 0) return Error{process.name_ + ": no network namespace " + spec.footing.network_namespace};
   }
   std::array<int, 2> input{}, output{}, report{};
   // Close-on-exec: a child that held another's input open would keep it from ending.
@@ -118,6 +104,7 @@ Result<Process> Process::start(const ProgramSpec& spec) {
   if (process.id_ == 0) {
     ::dup2(input[0], STDIN_FILENO);
     ::dup2(output[1], STDOUT_FILENO);
+    if (spec.quiet) ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
     become(spec, space, arguments.data(), environment.data(), report[1]);
   }
   for (const int fd : {input[0], output[1], report[1]}) ::close(fd);
@@ -125,7 +112,8 @@ Result<Process> Process::start(const ProgramSpec& spec) {
   process.input_ = input[1];
   process.output_ = output[0];
   int error = process.id_ < 0 ? errno : 0;
-  if (process.id_ > 0) [[maybe_unused]] const auto got = ::read(report[0], &error, sizeof error);
+  if (process.id_ > 0) [[maybe_unused]]
+    const auto got = ::read(report[0], &error, sizeof error);
   ::close(report[0]);
   if (error != 0) return Error{spec.path + " cannot be started: " + std::strerror(error)};
   return process;
@@ -173,13 +161,16 @@ Result<std::string> Process::hear(Duration deadline, const runtime::StopFlag& st
       heard_.erase(0, end + 1);
       return line;
     }
-    const Duration left = deadline - monotonic_now();
-    if (left <= Duration::zero()) return Error{name_ + " did not answer in time"};
+    // What is there is heard even when the time is over: others may have used it up.
+    const Duration left = std::max(deadline - monotonic_now(), Duration::zero());
     std::array<pollfd, 2> wait{{{output_, POLLIN, 0}, {stop.file_descriptor(), POLLIN, 0}}};
     const auto left_ms = std::chrono::ceil<std::chrono::milliseconds>(left).count();
     if (::poll(wait.data(), wait.size(), static_cast<int>(std::min<std::int64_t>(left_ms, 1000))) < 0) continue;
     if (wait[1].revents != 0) return Error{interrupted};
-    if (wait[0].revents == 0) continue;
+    if (wait[0].revents == 0) {
+      if (left > Duration::zero()) continue;
+      return Error{name_ + " did not answer in time"};
+    }
     std::array<char, 65536> bytes;
     const ssize_t size = ::read(output_, bytes.data(), bytes.size());
     if (size <= 0) return Error{name_ + " " + how_it_ended()};

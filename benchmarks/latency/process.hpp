@@ -16,16 +16,17 @@ namespace eciton::bench {
 
 /// What all threads of a program begin with.
 struct Footing {
-  std::string network_namespace;  // as `ip netns` names it; empty: ours
-  int cpu = -1;                   // all on this one; -1: wherever
-  int priority = 0;               // SCHED_FIFO; 0: SCHED_OTHER
+  std::string network_namespace{};  // its file; empty: ours
+  int cpu = -1;                     // all on this one; -1: wherever
+  int priority = 0;                 // SCHED_FIFO; 0: SCHED_OTHER
 };
 
 struct ProgramSpec {
-  std::string path;
-  std::vector<std::string> arguments;
-  std::map<std::string, std::string> environment;  // beside ours
-  Footing footing;
+  std::string path{};
+  std::vector<std::string> arguments{};
+  std::map<std::string, std::string> environment{};  // beside ours
+  Footing footing{};
+  bool quiet = false;  // its standard error is thrown away
 };
 
 class Process {
@@ -39,7 +40,8 @@ class Process {
 
   /// False: it is gone.
   bool say(const std::string& line);
-  /// Its next line; the Error says that it ended and how, that it was silent until `deadline`, or that `stop` was set.
+  /// Its next line; the Error says that it ended and how, that it was silent until `deadline`, or that `stop` was
+  /// set.
   Result<std::string> hear(Duration deadline, const runtime::StopFlag& stop);
   pid_t id() const { return id_; }
 
@@ -56,7 +58,7 @@ class Process {
   std::string heard_;
 };
 
-/// The first problem that `footing` has on this machine, before anything starts.
+/// What is wrong with the processor and the policy of `footing` on this machine, before anything starts.
 Status check(const Footing& footing);
 
 /// What Error::message begins with when `stop` ended a wait.

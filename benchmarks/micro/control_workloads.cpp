@@ -1,5 +1,5 @@
-// The whole control step as the service does it: the module's state taken, reference, pose control,
-// allocation, the rotor command written; alone in hover, and third of a chain.
+// The whole control step as the service does it: the module's state taken (and, at 100 Hz, the rotors'), reference,
+// pose control, allocation, the rotor command written; alone in hover, and third of a chain.
 #include <array>
 #include <memory>
 #include <vector>
@@ -47,8 +47,10 @@ class Flight {
     now_ += 2ms;
     ring_.set_now(now_);
     state_.write(state_of(1));
+    if (++steps_ % 5 == 0) rotor_state_.write({.module_id = 1, .stamp_ns = to_ns(now_), .armed = armed_});
     control_.step(now_);
     while (const auto command = rotors_.take()) {
+      armed_ = command->value.armed;
       thrust_N_ = command->value.rotors.empty() ? 0 : command->value.rotors[0].thrust_N;
     }
     return thrust_N_;
@@ -56,8 +58,8 @@ class Flight {
 
   /// In the chain others' states come at 50 Hz, contact wrenches at 100 Hz.
   double step_in_chain() {
-    if (++count_ % 5 == 0) contact_.write(contact_wrench());
-    if (count_ % 10 == 0) {
+    if (steps_ % 5 == 0) contact_.write(contact_wrench());
+    if (steps_ % 10 == 0) {
       state_.write(state_of(2));
       state_.write(state_of(3));
     }
@@ -101,14 +103,16 @@ class Flight {
   bus::Participant ring_{ring_config()};
   control::ControlService control_{ring_, control_config(), robot::legion()};
   bus::Writer<msg::ModuleState> state_ = ring_.create_writer(topics::module_state);
+  bus::Writer<msg::RotorState> rotor_state_ = ring_.create_writer(topics::rotor_state);
   bus::Writer<msg::ModeRequest> mode_ = ring_.create_writer(topics::mode_request);
   bus::Writer<msg::FlightGoal> goal_ = ring_.create_writer(topics::flight_goal);
   bus::Writer<msg::ChainView> view_ = ring_.create_writer(topics::chain_view);
   bus::Writer<msg::ContactWrench> contact_ = ring_.create_writer(topics::contact_wrench);
   bus::Reader<msg::RotorCommand> rotors_ = ring_.create_reader(topics::rotor_command);
   TimePoint now_{1s};
+  bool armed_ = false;
   double thrust_N_ = 0;
-  int count_ = 0;
+  int steps_ = 0;
 };
 
 Step alone() {

@@ -5,6 +5,7 @@
 
 #include "benchmarks/idl/payload.hpp"
 #include "benchmarks/micro/workload.hpp"
+#include "core/bus/inline_reader.hpp"
 #include "core/bus/reader.hpp"
 #include "core/bus/writer.hpp"
 
@@ -63,6 +64,22 @@ Step take_only() {
   };
 }
 
+/// The reader is called back within the write.
+Step deliver_inline() {
+  struct Inline : Pair {
+    using Pair::Pair;
+    std::int64_t stamp_ns = 0;
+    bus::RawWriter raw = sender.create_raw_writer(info(topic));
+    bus::InlineReader<Payload256> reader{
+        receiver, topic,
+        [](void* self, const Payload256& got) { static_cast<Inline*>(self)->stamp_ns = got.stamp_ns; }, this};
+  };
+  auto pair = std::make_shared<Inline>("mirror", 4);
+  std::vector<std::uint8_t> bytes(bus::TypeTraits<Payload256>::size_max);
+  bytes.resize(bus::encode(pair->sample, bytes));
+  return [pair, bytes] { return pair->raw.write(bytes) ? static_cast<double>(pair->stamp_ns) : -1; };
+}
+
 Step write_and_take(const char* vendor, std::uint32_t domain) {
   auto pair = std::make_shared<WithReader>(vendor, domain);
   return [pair] {
@@ -77,6 +94,7 @@ Step write_and_take(const char* vendor, std::uint32_t domain) {
 std::vector<Workload> delivery_workloads() {
   return {{"framework/serialize_and_hand_over", write_only, true},
           {"framework/take_and_deserialize", take_only, true},
+          {"framework/deserialize_inline", deliver_inline, true},
           {"sim_network/write_to_take", [] { return write_and_take("sim_network", 3); }, true}};
 }
 

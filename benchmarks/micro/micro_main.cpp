@@ -1,8 +1,13 @@
-// Times every workload with Google Benchmark, whose options it takes; counts the hot ones' uses of the heap.
+// Times every workload with Google Benchmark, whose options it takes, and --json FILE, --html FILE; counts the hot
+// ones' uses of the heap.
 #include <benchmark/benchmark.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
+#include <string>
+#include <vector>
 
+#include "benchmarks/micro/micro_report.hpp"
 #include "benchmarks/micro/workload.hpp"
 #include "core/base/result.hpp"
 #include "tests/allocation_guard/allocation_guard.hpp"
@@ -33,14 +38,28 @@ void run_workload(benchmark::State& state, const Workload& workload) {
 }
 
 int run(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);  // takes its own options out
+  CLI::App app("Times the steps of flight, piece by piece", "eciton-bench-micro");
+  eciton::bench::ReportFiles files;
+  app.add_option("--json", files.json, "file for the figures");
+  app.add_option("--html", files.html, "file for one self-contained page");
+  app.footer("And the options of Google Benchmark: --benchmark_filter, --benchmark_repetitions, ...");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  ok_or_throw(check_report_files(files));
   eciton::bench::find_mirror_plugin();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::AddCustomContext("built_with", ECITON_BUILT_WITH);
+  std::vector<std::string> names;
   for (const Workload& workload : eciton::bench::all_workloads()) {
+    names.push_back(workload.name);
     benchmark::RegisterBenchmark(workload.name.c_str(), run_workload, workload);
   }
-  benchmark::RunSpecifiedBenchmarks();
+  eciton::bench::KeepingReporter reporter(names);
+  if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) return 2;  // the filter fits none: it has said so
+  ok_or_throw(write_report_files(files, micro_result(reporter.kept(), ECITON_BUILT_WITH)));
   benchmark::Shutdown();
   return 0;
 }

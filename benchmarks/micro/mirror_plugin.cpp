@@ -13,7 +13,7 @@ struct eciton_participant {};
 struct eciton_reader {
   eciton_participant* participant;
   std::string topic;
-  eciton_wake wake;
+  eciton_delivery delivery;
   std::array<std::uint8_t, 8192> bytes{};
   std::uint32_t size = 0;
 };
@@ -44,16 +44,20 @@ void writer_destroy(eciton_writer* writer) { delete writer; }
 int writer_write(eciton_writer* writer, const std::uint8_t* cdr, std::uint32_t size) {
   for (eciton_reader* reader : readers()) {
     if (reader->participant == writer->participant || reader->topic != writer->topic) continue;
+    if (reader->delivery.sample != nullptr) {
+      reader->delivery.sample(reader->delivery.context, cdr, size);
+      continue;
+    }
     reader->size = std::min(size, static_cast<std::uint32_t>(reader->bytes.size()));
     std::memcpy(reader->bytes.data(), cdr, reader->size);
-    reader->wake.signal(reader->wake.context);
+    reader->delivery.signal(reader->delivery.context);
   }
   return 1;
 }
 
 eciton_reader* reader_create(eciton_participant* participant, const char* topic, const eciton_type*,
-                             const eciton_qos*, eciton_wake wake, char*, std::uint32_t) {
-  auto* reader = new eciton_reader{.participant = participant, .topic = topic, .wake = wake};
+                             const eciton_qos*, eciton_delivery delivery, char*, std::uint32_t) {
+  auto* reader = new eciton_reader{.participant = participant, .topic = topic, .delivery = delivery};
   readers().push_back(reader);
   return reader;
 }
@@ -71,6 +75,7 @@ std::uint32_t reader_take(eciton_reader* reader, std::uint32_t, eciton_sink sink
 
 std::uint32_t writer_matched(eciton_writer*) { return 1; }
 std::uint32_t reader_matched(eciton_reader*) { return 1; }
+void reader_losses(eciton_reader*, eciton_reader_losses* losses) { *losses = {}; }
 
 }  // namespace
 
@@ -88,6 +93,7 @@ extern "C" const eciton_plugin* eciton_dds_plugin(void) {
                                     reader_create,
                                     reader_destroy,
                                     reader_take,
-                                    reader_matched};
+                                    reader_matched,
+                                    reader_losses};
   return &plugin;
 }

@@ -12,7 +12,7 @@ namespace {
 
 /// Without the zeros that a measured figure would keep.
 std::string label(double value) {
-  if (std::abs(value) >= 1000 && std::abs(value) < 1e6) return number_text(value);
+  if (std::abs(value) >= 1000 && std::abs(value) < 1e9) return number_text(value);
   char digits[32];
   std::snprintf(digits, sizeof(digits), "%.6g", value);
   return digits;

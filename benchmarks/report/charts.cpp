@@ -1,9 +1,10 @@
-// The three kinds of chart. Lengths are in pixels of a drawing 900 wide.
+// Charts with lines. Lengths are in pixels of a drawing 900 wide.
 #include "benchmarks/report/charts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "benchmarks/report/axis.hpp"
 #include "benchmarks/report/svg.hpp"
@@ -102,32 +103,40 @@ std::vector<Stretch> stretches(const Samples& one, double end_s) {
   return out;
 }
 
+/// Where a run of stretches ends: after it comes a gap longer than three of the usual ones.
+std::vector<std::span<const Stretch>> without_gaps(const std::vector<Stretch>& all) {
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < all.size(); ++i) gaps.push_back(all[i].at_s - all[i - 1].at_s);
+  const double longest = 3.5 * quantile(gaps, 0.5);
+  std::vector<std::span<const Stretch>> runs;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i <= all.size(); ++i) {
+    if (i < all.size() && !(gaps[i - 1] > longest)) continue;
+    runs.push_back(std::span(all).subspan(begin, i - begin));
+    begin = i;
+  }
+  return runs;
+}
+
 void draw_panel(Svg& svg, const Samples& one, std::size_t index, const Frame& frame, double end_s) {
   frame.draw_y(svg);
   svg.words(left, frame.top - 8, "start", escaped(one.name), "name");
-  std::string upper, lower, middle;
   const std::vector<Stretch> all = stretches(one, end_s);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Stretch &here = all[i], &there = all[all.size() - 1 - i];
-    const char* begin = i == 0 ? "M" : "L";
-    upper += begin + Svg::point(frame.x(here.at_s), frame.y(here.greatest));
-    lower += "L" + Svg::point(frame.x(there.at_s), frame.y(there.least));
-    middle += begin + Svg::point(frame.x(here.at_s), frame.y(here.middle));
-  }
   if (all.empty()) return;
-  svg.path(upper + lower + "Z", "band " + colour(index), tip_of(one));
-  svg.path(middle, "line " + colour(index), tip_of(one));
-}
-
-bool finite(const Interval& interval) { return std::isfinite(interval.low) && std::isfinite(interval.high); }
-
-double greatest_of(const Bars& bars) {
-  double greatest = bars.limit.value_or(0);
-  for (const Bar& bar : bars.bars) {
-    if (std::isfinite(bar.value.value)) greatest = std::max(greatest, bar.value.value);
-    if (finite(bar.value)) greatest = std::max(greatest, bar.value.high);
+  std::string band, middle;
+  for (const std::span<const Stretch> run : without_gaps(all)) {
+    std::string back;
+    for (std::size_t i = 0; i < run.size(); ++i) {
+      const Stretch &here = run[i], &there = run[run.size() - 1 - i];
+      const char* begin = i == 0 ? "M" : "L";
+      band += begin + Svg::point(frame.x(here.at_s), frame.y(here.greatest));
+      back += "L" + Svg::point(frame.x(there.at_s), frame.y(there.least));
+      middle += begin + Svg::point(frame.x(here.at_s), frame.y(here.middle));
+    }
+    band += back + "Z";
   }
-  return greatest;
+  svg.path(band, "band " + colour(index), tip_of(one));
+  svg.path(middle, "line " + colour(index), tip_of(one));
 }
 
 }  // namespace
@@ -205,47 +214,35 @@ std::string time_chart(const SampleSet& given) {
   return "<div class=\"wide\">" + std::move(svg).finished() + "</div>\n";
 }
 
-std::string bars_chart(const Bars& bars) {
-  constexpr double names = 260, figures = 170, row = 24, heading = 26;
-  std::vector<std::string> known;
-  double height = 34;
-  for (std::size_t i = 0; i < bars.bars.size(); ++i) {
-    const bool begins = i == 0 || bars.bars[i].group != bars.bars[i - 1].group;
-    height += row + (begins && !bars.bars[i].group.empty() ? heading : 0);
-  }
-  Svg svg(width, height, escaped(bars.title));
-  const Axis axis = Axis::from_zero(greatest_of(bars));
-  const auto x = [&](double value) { return names + axis.position(value) * (width - names - figures); };
-  for (const Tick& tick : axis.ticks()) {
-    svg.line(x(tick.value), 4, x(tick.value), height - 28, "grid");
-    svg.words(x(tick.value), height - 10, "middle", tick.label, "tick");
-  }
-  svg.words(width, height - 10, "end", escaped(bars.unit), "tick");
-  double y = 0;
-  for (std::size_t i = 0; i < bars.bars.size(); ++i) {
-    const Bar& bar = bars.bars[i];
-    if ((i == 0 || bar.group != bars.bars[i - 1].group) && !bar.group.empty()) {
-      y += heading;
-      svg.words(4, y - 6, "start", escaped(bar.group), "name");
+std::string curves_chart(const Curves& curves) {
+  double x_least = infinity, x_greatest = -infinity, y_least = infinity, y_greatest = -infinity;
+  SampleSet names;
+  std::vector<Samples> named(curves.curves.size());
+  for (std::size_t i = 0; i < curves.curves.size(); ++i) {
+    named[i].name = curves.curves[i].name;
+    names.push_back(&named[i]);
+    for (const auto& [x, y] : curves.curves[i].points) {
+      x_least = std::min(x_least, x), x_greatest = std::max(x_greatest, x);
+      y_least = std::min(y_least, y), y_greatest = std::max(y_greatest, y);
     }
-    std::size_t index = static_cast<std::size_t>(std::find(known.begin(), known.end(), bar.name) - known.begin());
-    if (index == known.size()) known.push_back(bar.name);
-    svg.words(names - 10, y + 16, "end", escaped(bar.name), "label");
-    svg.words(width, y + 16, "end", interval_text(bar.value), "label figure");
-    if (std::isfinite(bar.value.value)) {
-      const std::string tip = escaped(bar.group + " " + bar.name) + ": " + interval_text(bar.value);
-      svg.bar(names, y + 4, x(bar.value.value) - names, row - 8, "fill " + colour(index), tip);
-    }
-    if (finite(bar.value)) {
-      const double from = x(bar.value.low), to = x(bar.value.high), middle = y + row / 2;
-      svg.line(from, middle, to, middle, "whisker");
-      svg.line(from, middle - 4, from, middle + 4, "whisker");
-      svg.line(to, middle - 4, to, middle + 4, "whisker");
-    }
-    y += row;
   }
-  if (bars.limit) svg.line(x(*bars.limit), 0, x(*bars.limit), height - 28, "limit");
-  return "<div class=\"wide\">" + std::move(svg).finished() + "</div>\n";
+  if (!std::isfinite(x_least) || !std::isfinite(y_least)) return "";
+  Svg svg(width, 400, escaped(curves.title));
+  const Frame frame{Axis::around(x_least, x_greatest), Axis::around(y_least, y_greatest), 20, 350};
+  frame.draw_y(svg);
+  for (const Tick& tick : frame.x_axis.ticks()) {
+    svg.words(frame.x(tick.value), frame.bottom + 20, "middle", tick.label, "tick");
+  }
+  svg.words(8, 12, "start", escaped(curves.unit), "tick");
+  svg.words((left + width - right) / 2, 394, "middle", escaped(curves.x_name), "tick");
+  for (std::size_t i = 0; i < curves.curves.size(); ++i) {
+    std::string data;
+    for (const auto& [x, y] : curves.curves[i].points) {
+      data += (data.empty() ? "M" : "L") + Svg::point(frame.x(x), frame.y(y));
+    }
+    svg.path(data, line_class(i) + " s" + std::to_string(i), escaped(curves.curves[i].name));
+  }
+  return legend(names) + "<div class=\"wide\">" + std::move(svg).finished() + "</div>\n";
 }
 
 }  // namespace eciton::bench

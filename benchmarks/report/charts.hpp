@@ -17,9 +17,11 @@ using SampleSet = std::vector<const Samples*>;
 /// Value over percentile, the percentile on a logarithmic tail: each further nine takes the same room. A line
 /// ends where its count resolves no more.
 std::string distribution_chart(const SampleSet& samples);
-/// One panel for each, on common axes: the median of each stretch of time, and its least and greatest value.
+/// One panel for each, on common axes: the median of each stretch of time, and its least and greatest value. Where
+/// nothing was measured for long (other variants had their turn) the line breaks.
 /// Empty where no sample has a time.
 std::string time_chart(const SampleSet& samples);
+std::string curves_chart(const Curves& curves);
 /// Rows within their groups, whiskers from low to high.
 std::string bars_chart(const Bars& bars);
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <functional>
 
 #include "benchmarks/report/result.hpp"
 #include "benchmarks/statistics/summary.hpp"
@@ -29,11 +30,12 @@ Status check_file(const std::string& option, const std::string& path) {
   return ok();
 }
 
-Status write_file(const std::string& option, const std::string& path, const std::string& text) {
+Status write_file(const std::string& option, const std::string& path,
+                  const std::function<void(std::ostream&)>& write) {
   const std::string draft = draft_of(path);
   {
     std::ofstream file(draft, std::ios::binary);
-    file << text;
+    write(file);
     if (!file.flush()) return cannot_write(option, path, errno);
   }
   if (std::rename(draft.c_str(), path.c_str()) == 0) return ok();
@@ -93,23 +95,23 @@ deploy::Measurement measurement_of(const Result& result) {
 
 }  // namespace
 
-std::string to_csv(const Result& result) {
-  std::string text = "name,unit,at_s,value\n";
+void write_csv(std::ostream& file, const Result& result) {
+  file << "name,unit,at_s,value\n";
   for (const Samples& samples : result.samples) {
     std::string name;
     add_field(name, samples.name);
     name += ',';
     add_field(name, samples.unit);
     name += ',';
+    std::string line;
     for (std::size_t i = 0; i < samples.values.size(); ++i) {
-      text += name;
-      if (i < samples.at_s.size()) add_number(text, samples.at_s[i]);
-      text += ',';
-      add_number(text, samples.values[i]);
-      text += '\n';
+      line = name;
+      if (i < samples.at_s.size()) add_number(line, samples.at_s[i]);
+      line += ',';
+      add_number(line, samples.values[i]);
+      file << line << '\n';
     }
   }
-  return text;
 }
 
 Status check_report_files(const ReportFiles& files) {
@@ -124,8 +126,9 @@ Status write_report_files(const ReportFiles& files, const Result& result) {
     if (first && !status) first = std::move(status);
   };
   if (!files.json.empty()) keep(deploy::write_measurement(files.json, measurement_of(result)));
-  if (!files.csv.empty()) keep(write_file("--csv", files.csv, to_csv(result)));
-  if (!files.html.empty()) keep(write_file("--html", files.html, to_html(result)));
+  if (!files.csv.empty()) keep(write_file("--csv", files.csv, [&](std::ostream& file) { write_csv(file, result); }));
+  if (!files.html.empty())
+    keep(write_file("--html", files.html, [&](std::ostream& file) { file << to_html(result); }));
   return first;
 }
 

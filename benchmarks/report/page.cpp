@@ -75,6 +75,7 @@ std::string to_html(const Result& result) {
   std::string text = head(result);
   if (!result.bars.empty()) text += "<h2>Side by side, 95 % confidence</h2>\n";
   for (const Bars& bars : result.bars) text += card(bars.title, bars_chart(bars));
+  for (const Curves& curves : result.curves) text += card(curves.title, curves_chart(curves));
   if (!result.tables.empty()) text += "<h2>Figures</h2>\n";
   for (const Table& table : result.tables) text += table_card(table);
   text += notes_of(result);

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/statistics/bootstrap.hpp"
@@ -25,7 +27,7 @@ struct Table {
 /// Side by side within its group.
 struct Bar {
   std::string group;  // "256 B"
-  std::string name;   // "Cyclone DDS, ours": one colour on the whole chart
+  std::string name;   // "Cyclone DDS, ours": one colour on the whole chart; names of one group only: its colour
   Interval value;     // whiskers where low and high are finite
 };
 
@@ -33,6 +35,17 @@ struct Bars {
   std::string title, unit;
   std::vector<Bar> bars = {};
   std::optional<double> limit = {};  // drawn as a line
+};
+
+struct Curve {
+  std::string name;
+  std::vector<std::pair<double, double>> points = {};
+};
+
+/// How something grows: both axes logarithmic where the values span more than a factor of 20.
+struct Curves {
+  std::string title, x_name, unit;
+  std::vector<Curve> curves = {};
 };
 
 struct Result {
@@ -45,6 +58,7 @@ struct Result {
   std::vector<Samples> samples;
   std::vector<Table> tables;
   std::vector<Bars> bars;
+  std::vector<Curves> curves;
   std::vector<std::string> notes;  // clock-error bounds, missing peers, how late the sender was
   bool partial = false;            // interrupted, or something to be measured was not there
 };
@@ -57,12 +71,13 @@ std::string number_text(double value);
 /// "1.02 [0.99, 1.06]"
 std::string interval_text(const Interval& interval);
 
+std::string to_text(const Table& table);
 /// Tables and notes, for people.
 std::string to_text(const Result& result);
 /// One self-contained page.
 std::string to_html(const Result& result);
 /// name,unit,at_s,value: every raw sample in a line of its own.
-std::string to_csv(const Result& result);
+void write_csv(std::ostream& file, const Result& result);
 
 struct ReportFiles {
   std::string json, csv, html;  // empty: not asked for

@@ -18,13 +18,15 @@ std::size_t width(const std::string& text) {
 
 std::string grouped(std::string digits) {
   for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3) {
-    digits.insert(static_cast<std::size_t>(at), ",");
+    digits.insert(static_cast<std::size_t>(at), 1, ',');
   }
   return digits;
 }
 
-void add_table(std::string& text, const Table& table) {
-  if (!table.title.empty()) text += table.title + "\n";
+}  // namespace
+
+std::string to_text(const Table& table) {
+  std::string text = table.title.empty() ? "" : table.title + "\n";
   std::vector<std::size_t> widths;
   for (const std::string& column : table.columns) widths.push_back(width(column));
   for (const std::vector<std::string>& row : table.rows) {
@@ -41,9 +43,8 @@ void add_table(std::string& text, const Table& table) {
   };
   add_row(table.columns);
   for (const std::vector<std::string>& row : table.rows) add_row(row);
+  return text;
 }
-
-}  // namespace
 
 std::string number_text(double value) {
   if (std::isnan(value)) return "–";
@@ -98,10 +99,7 @@ std::string to_text(const Result& result) {
   std::string text = result.title + (result.partial ? " (partial)" : "") + ", " + result.clock + " clock";
   if (!result.seed.is_null()) text += ", seed " + result.seed.dump();
   text += "\n";
-  for (const Table& table : result.tables) {
-    text += "\n";
-    add_table(text, table);
-  }
+  for (const Table& table : result.tables) text += "\n" + to_text(table);
   if (!result.notes.empty()) text += "\n";
   for (const std::string& note : result.notes) text += "  " + note + "\n";
   return text;

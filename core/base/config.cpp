@@ -1,174 +1,44 @@
-// YAML into a tree that remembers where each value came from, and from there into structs.
+// From a tree of values into structs, with a word for every value that does not fit.
 #include "core/base/config.hpp"
-
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <set>
+
+#include "core/base/config_node.hpp"
 
 namespace eciton {
 
-struct ConfigTree::Node {
-  enum class Kind { none, scalar, list, map } kind = Kind::none;
-  std::string scalar;
-  std::string where;  // "file:line"
-  std::vector<Node> list;
-  struct Entry;
-  std::vector<Entry> map;
-
-  Node* find(const std::string& key);
-};
-
-struct ConfigTree::Node::Entry {
-  std::string key;
-  Node node;
-};
-
-ConfigTree::Node* ConfigTree::Node::find(const std::string& key) {
-  for (Entry& entry : map) {
-    if (entry.key == key) return &entry.node;
-  }
-  return nullptr;
-}
-
 namespace {
+
+constexpr const char* text_due = "a text ('' for an empty one)";
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  for (const std::string& word : words) {
+    text += text.empty() ? "" : ", ";
+    text += word.empty() ? "''" : word;
+  }
   return text;
 }
 
-}  // namespace
-
-ConfigTree::ConfigTree() : root_(std::make_unique<Node>()) { root_->kind = Node::Kind::map; }
-ConfigTree::~ConfigTree() = default;
-ConfigTree::ConfigTree(ConfigTree&&) noexcept = default;
-ConfigTree& ConfigTree::operator=(ConfigTree&&) noexcept = default;
-ConfigTree::ConfigTree(const ConfigTree& other) : root_(std::make_unique<Node>(*other.root_)) {}
-
-namespace {
-
-template <class TreeNode>
-TreeNode from_yaml(const YAML::Node& yaml, const std::string& origin) {
-  TreeNode node;
-  node.where = origin + ":" + std::to_string(yaml.Mark().line + 1);
-  if (yaml.IsScalar()) {
-    node.kind = TreeNode::Kind::scalar;
-    node.scalar = yaml.Scalar();
-  } else if (yaml.IsSequence()) {
-    node.kind = TreeNode::Kind::list;
-    for (const auto& element : yaml) node.list.push_back(from_yaml<TreeNode>(element, origin));
-  } else if (yaml.IsMap()) {
-    node.kind = TreeNode::Kind::map;
-    for (const auto& entry : yaml) {
-      node.map.push_back({entry.first.Scalar(), from_yaml<TreeNode>(entry.second, origin)});
-    }
-  }
-  return node;
-}
-
-template <class TreeNode>
-void merge(TreeNode& into, TreeNode&& layer) {
-  if (into.kind != TreeNode::Kind::map || layer.kind != TreeNode::Kind::map) {
-    into = std::move(layer);
-    return;
-  }
-  for (auto& [key, node] : layer.map) {
-    if (TreeNode* existing = into.find(key)) {
-      merge(*existing, std::move(node));
-    } else {
-      into.map.push_back({key, std::move(node)});
-    }
-  }
-}
-
-template <class TreeNode>
-void emit(YAML::Emitter& out, const TreeNode& node) {
+/// What stands at a node, for a person.
+std::string found(const ConfigTree::Node& node) {
   switch (node.kind) {
-    case TreeNode::Kind::none:
-      out << YAML::Null;
-      break;
-    case TreeNode::Kind::scalar:
-      out << node.scalar;
-      break;
-    case TreeNode::Kind::list:
-      out << YAML::Flow << YAML::BeginSeq;
-      for (const auto& element : node.list) emit(out, element);
-      out << YAML::EndSeq;
-      break;
-    case TreeNode::Kind::map:
-      out << YAML::BeginMap;
-      for (const auto& [key, value] : node.map) {
-        out << YAML::Key << key << YAML::Value;
-        emit(out, value);
-      }
-      out << YAML::EndMap;
-      break;
+    case ConfigTree::Node::Kind::none:
+      return "no value";
+    case ConfigTree::Node::Kind::scalar:
+      return "'" + node.scalar + "'";
+    case ConfigTree::Node::Kind::list:
+      return "a list";
+    case ConfigTree::Node::Kind::map:
+      return "keys and values";
   }
+  return {};
 }
 
 }  // namespace
-
-Status ConfigTree::add_text(const std::string& yaml, const std::string& origin) {
-  try {
-    const YAML::Node parsed = YAML::Load(yaml);
-    if (parsed.IsNull()) return ok();
-    if (!parsed.IsMap()) return Error{origin + ": expected keys and values at the top, as in 'key: value'"};
-    merge(*root_, from_yaml<Node>(parsed, origin));
-    return ok();
-  } catch (const YAML::Exception& e) {
-    return Error{origin + ":" + std::to_string(e.mark.line + 1) + ": not valid YAML: " + e.msg};
-  }
-}
-
-Status ConfigTree::add_file(const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "r");
-  if (file == nullptr)
-    return Error{"config file " + path + " cannot be read: it does not exist or may not be opened"};
-  std::string text;
-  std::array<char, 4096> block{};
-  for (std::size_t got = 0; (got = std::fread(block.data(), 1, block.size(), file)) > 0;)
-    text.append(block.data(), got);
-  std::fclose(file);
-  return add_text(text, path);
-}
-
-Status ConfigTree::set(const std::string& assignment, const std::string& origin) {
-  const auto equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    return Error{origin + " " + assignment + ": expected key=value, as in control.law=local"};
-  }
-  Node value;
-  try {
-    value = from_yaml<Node>(YAML::Load(assignment.substr(equals + 1)), origin);
-  } catch (const YAML::Exception& e) {
-    return Error{origin + " " + assignment + ": the value is not valid YAML: " + e.msg};
-  }
-  value.where = origin + " " + assignment;
-  std::string keys = assignment.substr(0, equals);
-  while (true) {
-    const auto dot = keys.rfind('.');
-    Node parent;
-    parent.kind = Node::Kind::map;
-    parent.where = value.where;
-    parent.map.push_back({dot == std::string::npos ? keys : keys.substr(dot + 1), std::move(value)});
-    value = std::move(parent);
-    if (dot == std::string::npos) break;
-    keys.resize(dot);
-  }
-  merge(*root_, std::move(value));
-  return ok();
-}
-
-std::string ConfigTree::to_yaml() const {
-  YAML::Emitter out;
-  emit(out, *root_);
-  return std::string(out.c_str()) + "\n";
-}
 
 struct ConfigReader::State {
   struct Level {
@@ -187,21 +57,20 @@ struct ConfigReader::State {
   }
   void fail(const ConfigTree::Node& node, const std::string& path, const std::string& expected) {
     if (!error.empty()) return;
-    error = node.where + ": " + path + ": found '" + node.scalar + "', expected " + expected;
+    error = node.where + ": " + path + ": found " + found(node) + ", expected " + expected;
   }
-  /// The scalar under a key (of the element itself for nullptr); nullptr when absent or wrong.
+  /// What stands under a key (the element itself for nullptr); nullptr when absent.
+  ConfigTree::Node* node(const char* key) {
+    if (key == nullptr) return level().node;
+    level().known.emplace_back(key);
+    return level().node->find(key);
+  }
+  /// nullptr when absent or no scalar.
   ConfigTree::Node* scalar(const char* key, const char* expected) {
-    ConfigTree::Node* node = level().node;
-    if (key != nullptr) {
-      level().known.emplace_back(key);
-      node = node->find(key);
-    }
-    if (node == nullptr) return nullptr;
-    if (node->kind != ConfigTree::Node::Kind::scalar) {
-      fail(*node, path_of(key), expected);
-      return nullptr;
-    }
-    return node;
+    ConfigTree::Node* there = node(key);
+    if (there == nullptr || there->kind == ConfigTree::Node::Kind::scalar) return there;
+    fail(*there, path_of(key), expected);
+    return nullptr;
   }
   void check_unknown() {
     for (const auto& [key, node] : level().node->map) {
@@ -241,10 +110,15 @@ bool ConfigReader::enter(const char* key) {
   return true;
 }
 
-bool ConfigReader::enter_element(const char* key, std::size_t index) {
+bool ConfigReader::enter_element(const char* key, std::size_t index, bool has_fields) {
   State& s = *state_;
-  ConfigTree::Node* list = s.level().node->find(key);
-  s.levels.push_back({&list->list[index], s.path_of(key) + "[" + std::to_string(index) + "]", {}});
+  ConfigTree::Node& element = s.level().node->find(key)->list[index];
+  const std::string path = s.path_of(key) + "[" + std::to_string(index) + "]";
+  if (has_fields && element.kind != ConfigTree::Node::Kind::map) {
+    s.fail(element, path, "keys and values, as in {key: value}");
+    return false;
+  }
+  s.levels.push_back({&element, path, {}});
   return true;
 }
 
@@ -277,7 +151,12 @@ std::vector<std::string> ConfigReader::map_keys(const char* key) {
 }
 
 void ConfigReader::read_map_entry(const char* key, const std::string& name, std::string& value) {
-  value = state_->level().node->find(key)->find(name)->scalar;
+  const ConfigTree::Node& node = *state_->level().node->find(key)->find(name);
+  if (node.kind == ConfigTree::Node::Kind::scalar) {
+    value = node.scalar;
+  } else {
+    state_->fail(node, state_->path_of(key) + "." + name, text_due);
+  }
 }
 
 namespace {
@@ -337,30 +216,33 @@ void ConfigReader::read(const char* key, double& value, const Range* range, cons
   read_number(*state_, key, value, range, "a number");
 }
 void ConfigReader::read(const char* key, std::string& value, const Range*, const OneOf* options) {
-  const std::string expected = options != nullptr ? "one of " + joined(options->values) : "a text";
-  auto* node = state_->scalar(key, expected.c_str());
+  const std::string expected = options != nullptr ? "one of " + joined(options->values) : text_due;
+  const auto allowed = [&](const std::string& text) {
+    return options == nullptr ||
+           std::find(options->values.begin(), options->values.end(), text) != options->values.end();
+  };
+  // "key=" means the empty text where that is one of the field's words; elsewhere it is an oversight.
+  const bool empty_means_something = options != nullptr && allowed("");
+  auto* node = state_->node(key);
   if (node == nullptr) return;
-  if (options != nullptr &&
-      std::find(options->values.begin(), options->values.end(), node->scalar) == options->values.end()) {
+  if (node->kind == ConfigTree::Node::Kind::none && empty_means_something) {
+    value.clear();
+  } else if (node->kind == ConfigTree::Node::Kind::scalar && allowed(node->scalar)) {
+    value = node->scalar;
+  } else {
     state_->fail(*node, state_->path_of(key), expected);
-    return;
   }
-  value = node->scalar;
 }
 void ConfigReader::read(const char* key, std::array<double, 3>& value, const Range*, const OneOf*) {
-  ConfigTree::Node* node = state_->level().node;
-  if (key != nullptr) {
-    state_->level().known.emplace_back(key);
-    node = node->find(key);
-  }
+  ConfigTree::Node* node = state_->node(key);
   if (node == nullptr) return;
   if (node->kind != ConfigTree::Node::Kind::list || node->list.size() != 3) {
     state_->fail(*node, state_->path_of(key), "three numbers, as in [0, 0, 1.5]");
     return;
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!parse_number(node->list[k].scalar, value[k])) {
-      state_->fail(node->list[k], state_->path_of(key), "a number");
+    if (!parse_number(node->list[k].scalar, value[k]) || !std::isfinite(value[k])) {
+      state_->fail(node->list[k], state_->path_of(key) + "[" + std::to_string(k) + "]", "a number");
     }
   }
 }

@@ -1,7 +1,7 @@
 // Plain structs from YAML. A struct lists its fields once, in `template <class V> void visit_fields(V& v)`:
 //   v("rate_Hz", rate_Hz, in_range(1, 1000));
-// Missing keys keep their defaults. An unknown key, a wrong type or a value out of range is an Error that
-// names file, line, key, what was found and what would be right. Files may be layered and single keys set
+// Missing keys keep their defaults. An unknown key, one given twice, a wrong type or a value out of range is an
+// Error that names file, line, key, what was found and what would be right. Files may be layered and single keys set
 // by text ("control.rate_Hz=200", as --set gives them).
 #pragma once
 
@@ -44,7 +44,7 @@ class ConfigTree {
   Status set(const std::string& assignment, const std::string& origin);
   std::string to_yaml() const;
 
-  struct Node;  // defined in config.cpp
+  struct Node;  // config_node.hpp
 
  private:
   friend class ConfigReader;
@@ -92,8 +92,9 @@ class ConfigReader {
     if (count == npos) return;
     list.assign(count, {});
     for (std::size_t k = 0; k < count; ++k) {
-      if (!enter_element(key, k)) continue;
-      if constexpr (requires { list[k].visit_fields(*this); }) {
+      constexpr bool has_fields = requires { list[k].visit_fields(*this); };
+      if (!enter_element(key, k, has_fields)) continue;
+      if constexpr (has_fields) {
         list[k].visit_fields(*this);
       } else {
         read(nullptr, list[k], nullptr, nullptr);
@@ -104,7 +105,7 @@ class ConfigReader {
 
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);
   bool enter(const char* key);
-  bool enter_element(const char* key, std::size_t index);
+  bool enter_element(const char* key, std::size_t index, bool has_fields);
   void leave();
   std::size_t list_size(const char* key);
   std::vector<std::string> map_keys(const char* key);

@@ -24,6 +24,7 @@ struct TopicInfo {
   Duration deadline;
   Duration lifespan;
   eciton_type type;
+  std::uint32_t depth = 0;  // samples of each key that a reader of bytes keeps; 0: as the class says
 };
 
 template <Message T>
@@ -38,7 +39,8 @@ TopicInfo info(const Topic<T>& topic) {
           {.name = Traits::name.data(),
            .size_max = Traits::size_max,
            .key_size = Traits::key_size,
-           .key_hash = &key_hash_of_bytes<T>}};
+           .key_hash = &key_hash_of_bytes<T>},
+          0};
 }
 
 /// The one mapping from QoS class to what a plugin is asked for.

@@ -15,17 +15,20 @@ InlineReaderCore::InlineReaderCore(Participant& participant, const TopicInfo& to
                                        static_cast<InlineReaderCore*>(self)->deliver({cdr, size});
                                      },
                                  .context = this};
+  // Listed as long as calls may come: one that writes goes through the list.
+  participant_.inline_readers_.push_back(this);
   std::array<char, 512> error{};
   handle_ = participant_.plugin_->reader_create(participant_.handle_, name_.c_str(), &type_, &qos, delivery,
                                                 error.data(), error.size());
-  if (handle_ == nullptr) throw BadInput{{"inline reader of topic " + name_ + ": " + error.data()}};
-  participant_.inline_readers_.push_back(this);
+  if (handle_ != nullptr) return;
+  std::erase(participant_.inline_readers_, this);
+  throw BadInput{{"inline reader of topic " + name_ + ": " + error.data()}};
 }
 
 InlineReaderCore::~InlineReaderCore() {
-  std::erase(participant_.inline_readers_, this);
   const ReaderStatistics last = statistics();
   participant_.plugin_->reader_destroy(handle_);
+  std::erase(participant_.inline_readers_, this);
   participant_.dropped_by_gone_readers_ += last.dropped() + last.dropped_by_vendor();
 }
 

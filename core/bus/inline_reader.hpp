@@ -11,8 +11,9 @@ namespace eciton::bus {
 
 /// What inline readers of every type share. The calls come from the vendor's thread, for samples of the participant's
 /// own writers from the writing one: these two may come at the same time. None comes after destruction, which must
-/// not be asked for in a call. Whoever writes in a call uses a writer that no other thread uses; where another inline
-/// reader of the process answers, Fast DDS calls it within the call.
+/// not be asked for in a call. Whoever writes in a call uses a writer that no other thread uses, and meanwhile no
+/// other endpoint of the participant is made or destroyed; where another inline reader of the process answers, Fast
+/// DDS calls it within the call.
 class InlineReaderCore {
  public:
   /// Whether the bytes were a sample of the type. Real-time safe if what it calls is.

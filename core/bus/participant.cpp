@@ -98,7 +98,8 @@ std::string failed(const char* what, const std::string& topic, const char* error
 ReaderCore::ReaderCore(Participant& participant, const TopicInfo& topic)
     : participant_(participant), topic_(topic), name_(topic.name), wakes_(participant.readers_wake_) {
   topic_.name = name_;
-  const eciton_qos qos = plugin_qos(topic.qos, topic.type.key_size > 0);
+  eciton_qos qos = plugin_qos(topic.qos, topic.type.key_size > 0);
+  qos.depth = std::max(qos.depth, topic.depth);
   const auto signal = [](void* context) {
     auto* reader = static_cast<ReaderCore*>(context);
     // Sequentially consistent with set_wakes and the fetch that follows it: either we see that it wakes, or that

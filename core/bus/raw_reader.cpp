@@ -9,7 +9,9 @@ namespace eciton::bus {
 class RawReader::Core final : public ReaderCore {
  public:
   Core(Participant& participant, const TopicInfo& topic)
-      : ReaderCore(participant, topic), keep_last_one_(topic.qos != QosClass::event), slots_(capacity(topic)) {
+      : ReaderCore(participant, topic),
+        keep_last_one_(topic.qos != QosClass::event && topic.depth <= 1),
+        slots_(capacity(topic)) {
     for (Slot& slot : slots_) slot.bytes.resize(topic.type.size_max);
   }
 
@@ -46,7 +48,7 @@ class RawReader::Core final : public ReaderCore {
 
   static std::size_t capacity(const TopicInfo& topic) {
     const eciton_qos qos = plugin_qos(topic.qos, topic.type.key_size > 0);
-    return std::max(qos.depth, qos.instances_max);
+    return std::max({qos.depth, topic.depth, qos.instances_max});
   }
 
   Slot& slot_for(const KeyHash& key) {

@@ -62,6 +62,11 @@ class Allocator {
   /// Says where the gimbals are now, as after a restart in flight.
   void set_gimbals(std::span<const RotorOutput> rotors);
 
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.gimbal_rad_);
+  }
+
  private:
   using Block = Eigen::Matrix<double, 6, 3>;
   Vector6 solve(const Matrix6& QQt, const Vector6& wrench) const;

@@ -29,6 +29,11 @@ struct Wrench {
   Vector3 force = Vector3::Zero();
   Vector3 moment = Vector3::Zero();
 
+  /// What a checkpoint keeps: see core/runtime/service_state.hpp; so wherever this is found.
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.force, self.moment);
+  }
   Wrench operator+(const Wrench& o) const { return {force + o.force, moment + o.moment}; }
   Wrench operator-(const Wrench& o) const { return {force - o.force, moment - o.moment}; }
   Wrench operator-() const { return {-force, -moment}; }

@@ -38,6 +38,11 @@ class JointTrajectory {
   bool finished(double t_s) const;
   double end_s() const;
 
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.base_, self.present_, self.next_, self.has_next_);
+  }
+
  private:
   Airframe airframe_;
   JointTrajectoryConfig config_;

@@ -19,6 +19,11 @@ struct PoseReference {
   Matrix3 R_WM = Matrix3::Identity();
   Vector3 w_WM_M = Vector3::Zero();
   Vector3 alpha_WM_M = Vector3::Zero();
+
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.p_WM, self.v_WM, self.a_WM, self.R_WM, self.w_WM_M, self.alpha_WM_M);
+  }
 };
 
 enum class SpeedProfile {
@@ -66,6 +71,12 @@ class PoseMotion {
   double start_s() const { return start_s_; }
   double duration_s() const { return straight_ ? progress_.duration_s() : quintic_.duration_s(); }
   bool finished(double t_s) const { return t_s >= start_s_ + duration_s(); }
+
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.p_from_, self.p_by_, self.R_from_, self.phi_by_, self.start_s_, self.straight_, self.progress_,
+      self.quintic_, self.turn_unit_);
+  }
 
  private:
   Vector3 p_from_ = Vector3::Zero(), p_by_ = Vector3::Zero();

@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstring>
 #include <string>
 
+#include "core/base/contract.hpp"
 #include "core/base/log.hpp"
 
 namespace eciton::runtime {
@@ -145,6 +147,40 @@ void CheckpointWriter::save_latest() {
   ++(saved ? written_ : failed_);
   // Once: a full or missing directory would fill the log too.
   if (!saved && failed_ == 1) spdlog::warn("{}", saved.error().message);
+}
+
+namespace {
+
+std::size_t state_size(const Service& service) {
+  StateWriter counting({});
+  service.save_state(counting);
+  return counting.size();
+}
+
+}  // namespace
+
+Checkpoint::Checkpoint(Service& service, const std::filesystem::path& file, Duration interval)
+    : service_(service),
+      state_(state_size(service)),
+      file_(file, service.state_version(), state_.size()),
+      interval_(interval) {}
+
+Result<bool> Checkpoint::load() {
+  const auto found = file_.load(state_);
+  if (!found || !*found) return found;
+  StateReader reader(state_);
+  service_.load_state(reader);
+  ECITON_EXPECT(reader.complete(), "a service loads what it saves, value for value");
+  return true;
+}
+
+void Checkpoint::start() { writer_ = std::make_unique<CheckpointWriter>(file_, state_.size(), interval_); }
+
+void Checkpoint::save() noexcept {
+  if (!writer_) return;
+  StateWriter writer(state_);
+  service_.save_state(writer);
+  writer_->put(state_);
 }
 
 }  // namespace eciton::runtime

@@ -7,19 +7,18 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <thread>
-#include <type_traits>
 #include <vector>
 
 #include "core/base/result.hpp"
 #include "core/base/time.hpp"
 #include "core/bus/waker.hpp"
+#include "core/runtime/service.hpp"
 
 namespace eciton::runtime {
 
@@ -89,36 +88,22 @@ class CheckpointWriter {
   std::thread thread_;
 };
 
-/// `version` changes with the meaning of State; a file of another version is not read.
-template <class State>
+/// A service's checkpoint. Its version and size decide whether a file is read.
 class Checkpoint {
-  static_assert(std::is_trivially_copyable_v<State>);
-
  public:
-  Checkpoint(const std::filesystem::path& file, std::uint32_t version,
-             Duration interval = std::chrono::milliseconds(50))
-      : file_(file, version, sizeof(State)), interval_(interval) {}
+  Checkpoint(Service& service, const std::filesystem::path& file, Duration interval = std::chrono::milliseconds(50));
 
-  /// At the start, before the first put. Nothing: no file, the process starts anew. An error is for a warning: it
-  /// starts anew too.
-  Result<std::optional<State>> load() const {
-    std::array<std::byte, sizeof(State)> bytes;
-    const auto found = file_.load(bytes);
-    if (!found) return found.error();
-    std::optional<State> state;
-    if (*found) std::memcpy(&state.emplace(), bytes.data(), bytes.size());
-    return state;
-  }
-
+  /// Before the service's first step. False: no file, it starts anew. An error is for a warning: it starts anew too.
+  Result<bool> load();
   /// Starts the thread that writes; before the service is active.
-  void start() { writer_ = std::make_unique<CheckpointWriter>(file_, sizeof(State), interval_); }
-  /// From the step, one thread; real-time safe. Without effect before start.
-  void put(const State& state) noexcept {
-    if (writer_) writer_->put(std::as_bytes(std::span(&state, 1)));
-  }
+  void start();
+  /// Between steps; real-time safe. Without effect before start.
+  void save() noexcept;
   const CheckpointWriter* writer() const { return writer_.get(); }
 
  private:
+  Service& service_;
+  std::vector<std::byte> state_;
   CheckpointFile file_;
   Duration interval_;
   std::unique_ptr<CheckpointWriter> writer_;

@@ -7,6 +7,7 @@
 
 #include "core/base/time.hpp"
 #include "core/bus/endpoint.hpp"
+#include "core/runtime/service_state.hpp"
 #include "idl/fleet.hpp"
 
 namespace eciton::runtime {
@@ -31,6 +32,10 @@ Schedule on(Reader& reader, Duration at_most, Phase phase) {
   return {.trigger = &reader.trigger(), .at_most = at_most, .phase = phase};
 }
 
+/// A checkpoint older than this when the service steps again describes a flight that is over: as long as the
+/// hardware host holds a chain's hover.
+inline constexpr Duration resume_within = std::chrono::seconds(2);
+
 class Service {
  public:
   virtual ~Service() = default;
@@ -42,6 +47,13 @@ class Service {
 
   /// Adds what only this service knows to its heartbeat; called between steps.
   virtual void describe(msg::Heartbeat&) const noexcept {}
+
+  /// The meaning of what it keeps for the case that its process dies; 0: nothing. Another version is not read.
+  virtual std::uint32_t state_version() const noexcept { return 0; }
+  /// Between steps; always the same number of bytes. Real-time safe.
+  virtual void save_state(StateWriter&) const noexcept {}
+  /// Before its first step: what the process that died had saved last.
+  virtual void load_state(StateReader&) noexcept {}
 };
 
 }  // namespace eciton::runtime

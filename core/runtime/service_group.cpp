@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/base/contract.hpp"
+#include "core/base/log.hpp"
 #include "core/base/wall_clock.hpp"
 #include "core/runtime/name_key.hpp"
 #include "idl/topics.hpp"
@@ -13,6 +14,8 @@
 namespace eciton::runtime {
 
 namespace {
+
+constexpr Duration checkpoint_period = std::chrono::milliseconds(50);
 
 void check(const Service& service, const Schedule& schedule, const std::string& process) {
   const std::string who = "service " + std::string(service.name()) + " of " + process + ": ";
@@ -57,6 +60,7 @@ ServiceGroup::Entry& ServiceGroup::add(Service& service, Pace at) {
   entry->schedule = schedule;
   entry->next_due = entry->triggered() ? at + schedule.at_most : at;
   fill_constant_fields(*entry);
+  if (!config_.checkpoints.empty() && service.state_version() != 0) take_up_checkpoint(*entry);
   const auto place = std::upper_bound(entries_.begin(), entries_.end(), schedule.phase,
                                       [](Phase phase, const auto& other) { return phase < other->schedule.phase; });
   return **entries_.insert(place, std::move(entry));
@@ -73,6 +77,16 @@ void ServiceGroup::fill_constant_fields(Entry& entry) {
   heartbeat.service = entry.service->name();
   heartbeat.vendor = std::string_view(module_ring().config().vendor);
   heartbeat.pid = pacing_ != Pacing::simulated ? static_cast<std::uint32_t>(::getpid()) : 0;
+}
+
+void ServiceGroup::take_up_checkpoint(Entry& entry) {
+  const std::string name(entry.service->name());
+  entry.checkpoint =
+      std::make_unique<Checkpoint>(*entry.service, config_.checkpoints / (name + ".checkpoint"), checkpoint_period);
+  const auto loaded = entry.checkpoint->load();
+  if (!loaded) spdlog::warn("{}: {}", name, loaded.error().message);
+  if (loaded && *loaded) spdlog::info("{} goes on from its checkpoint", name);
+  entry.checkpoint->start();
 }
 
 void ServiceGroup::start(Pace at) {
@@ -143,6 +157,11 @@ void ServiceGroup::beat_if_due(Pace at, TimePoint now) noexcept {
     entry->statistics.fill(heartbeat, at);
     entry->service->describe(heartbeat);
     heartbeat_->write(heartbeat);
+  }
+  if (at < next_checkpoint_) return;
+  next_checkpoint_ = at + checkpoint_period;
+  for (const auto& entry : entries_) {
+    if (entry->checkpoint) entry->checkpoint->save();
   }
 }
 

@@ -2,12 +2,14 @@
 // due, stepping in the order of phases, statistics and heartbeats. The executors differ in who moves time.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/bus/participant.hpp"
+#include "core/runtime/checkpoint.hpp"
 #include "core/runtime/cycle_statistics.hpp"
 #include "core/runtime/service.hpp"
 
@@ -18,6 +20,7 @@ struct ExecutorConfig {
   std::string process = "eciton";
   int realtime_priority = 0;  // SCHED_FIFO, 1 to 99, with memory locked; 0: as the system schedules it
   Duration heartbeat_period = std::chrono::milliseconds(10);  // 0: no heartbeats
+  std::filesystem::path checkpoints{};  // directory where services find and leave their state; empty: they start anew
 };
 
 /// Instants on the clock that paces an executor, since that clock's epoch: monotonic on a robot, the
@@ -38,6 +41,7 @@ class ServiceGroup {
     bool suspended = false;  // neither steps nor beats: a hang, for tests of failures
     CycleStatistics statistics;
     msg::Heartbeat heartbeat;  // what does not change is filled in
+    std::unique_ptr<Checkpoint> checkpoint;
 
     bool triggered() const { return schedule.trigger != nullptr; }
   };
@@ -47,8 +51,8 @@ class ServiceGroup {
   ServiceGroup(const ServiceGroup&) = delete;
   ServiceGroup& operator=(const ServiceGroup&) = delete;
 
-  /// Before a run; between ticks of a simulation, where it is due from `at` on. Throws BadInput on a bad
-  /// schedule or a second service of one name.
+  /// Before a run; between ticks of a simulation, where it is due from `at` on. Takes up the service's checkpoint,
+  /// if there is one. Throws BadInput on a bad schedule or a second service of one name.
   Entry& add(Service& service, Pace at = Pace::zero());
   /// Between ticks: it steps no more, as if its process had died.
   void remove(const Service& service);
@@ -66,7 +70,7 @@ class ServiceGroup {
   bool due(Entry& entry, Pace at) noexcept;
   /// Steps it, as module time `now`; returns when the step ended (simulated: `at`). Real-time safe if the service is.
   Pace step(Entry& entry, Pace at, TimePoint now) noexcept;
-  /// Publishes a heartbeat of every service if it is time. Real-time safe.
+  /// Publishes a heartbeat of every service, and hands its state to its checkpoint, if it is time. Real-time safe.
   void beat_if_due(Pace at, TimePoint now) noexcept;
 
   /// When something falls due by time alone; with heartbeats, or without.
@@ -86,6 +90,7 @@ class ServiceGroup {
 
  private:
   void fill_constant_fields(Entry& entry);
+  void take_up_checkpoint(Entry& entry);
   void learn_clock_offsets() noexcept;
 
   ExecutorConfig config_;
@@ -95,6 +100,7 @@ class ServiceGroup {
   std::optional<bus::Writer<msg::Heartbeat>> heartbeat_;
   std::optional<bus::Reader<msg::Beacon>> beacon_;  // our module's own, which knows how the peers' clocks stand
   Pace next_heartbeat_ = Pace::max();
+  Pace next_checkpoint_{};
 };
 
 }  // namespace eciton::runtime

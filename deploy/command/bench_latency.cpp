@@ -15,7 +15,6 @@ namespace {
 struct Options {
   bench::LatencyOptions measure;
   bench::ReportFiles files;
-  std::vector<std::string> hosts;
   bool anywhere = false;
 };
 
@@ -24,16 +23,16 @@ void hasten(bench::LatencyOptions& options, const CLI::App& verb) {
   if (!options.quick) return;
   if (verb.count("--rates") == 0) options.rates_Hz = {2000};
   if (verb.count("--duration") == 0) options.duration_s = 20;  // ends by time
+  // Many short blocks: neighbours share their weather, and confidence grows with their number.
+  if (verb.count("--block") == 0) options.block_s = 0.04;
 }
 
 int run(Options options, const CLI::App& verb) {
   bench::LatencyOptions& measure = options.measure;
   hasten(measure, verb);
-  if (!options.hosts.empty()) {
-    if (options.hosts.size() != 2) throw BadInput{{"--hosts: give two, as in --hosts m1,m2: one pings, one echoes"}};
-    measure.ping_host = options.hosts[0];
-    measure.echo_host = options.hosts[1];
-    if (verb.count("--interface") == 0) measure.network_interface = "eth0";
+  if (!measure.hosts.empty()) {
+    if (measure.hosts.size() != 2) throw BadInput{{"--hosts: give two, as in --hosts m1,m2: one pings, one echoes"}};
+    if (verb.count("--over") == 0) measure.over = {"hosts"};
   }
   measure.pin = !options.anywhere;
   ok_or_throw(bench::check_report_files(options.files));
@@ -45,10 +44,10 @@ int run(Options options, const CLI::App& verb) {
   {
     bench::ProgressLine progress("bench latency");
     overhead = bench::measure_overhead(measure, stop);
-    measured = bench::measure_latency(measure, plan, stop,
-                                      [&](std::size_t finished, std::size_t all, double left_s, const std::string& doing) {
-                                        progress.show(finished, all, left_s, doing);
-                                      });
+    measured = bench::measure_latency(
+        measure, plan, stop, [&](std::size_t finished, std::size_t all, double left_s, const std::string& doing) {
+          progress.show(finished, all, left_s, doing);
+        });
   }
   const bench::Result result = bench::latency_result(measure, plan, measured, overhead);
   std::fputs(bench::to_text(result).c_str(), stdout);
@@ -62,7 +61,8 @@ int run(Options options, const CLI::App& verb) {
 void add_bench_latency(CLI::App& bench, Run& run_chosen) {
   auto options = std::make_shared<Options>();
   bench::LatencyOptions& measure = options->measure;
-  CLI::App& verb = *bench.add_subcommand("latency", "Round trip and one way, ours beside native DDS, UDP, ZeroMQ, LCM");
+  CLI::App& verb =
+      *bench.add_subcommand("latency", "Round trip and one way, ours beside native DDS, UDP, ZeroMQ, LCM");
   const auto list = [&](const char* name, auto& value, const char* help) {
     verb.add_option(name, value, help)->delimiter(',')->allow_extra_args(false)->capture_default_str();
   };
@@ -79,8 +79,10 @@ void add_bench_latency(CLI::App& bench, Run& run_chosen) {
   verb.add_option("--block", measure.block_s, "seconds after which the next lane takes its turn")
       ->check(CLI::Range(0.01, 60.0))
       ->capture_default_str();
-  list("--hosts", options->hosts, "two network namespaces, as 'eciton net' makes them");
-  verb.add_option("--interface", measure.network_interface, "in both (default: lo, eth0 with --hosts)");
+  list("--over", measure.over, "loopback; hosts: two of a net of its own; impaired: the same, disturbed");
+  list("--impairment", measure.impairment, "of that, as 'eciton net set' takes it");
+  list("--hosts", measure.hosts, "two network namespaces to use instead, as eciton-m1,eciton-m2");
+  verb.add_option("--interface", measure.network_interface, "of both ends (default: lo, eth0 in hosts)");
   list("--peers", measure.peers, "addresses for discovery instead of multicast");
   verb.add_option("--domain", measure.domain, "first DDS domain; each lane takes one")->capture_default_str();
   verb.add_option("--priority", measure.priority, "SCHED_FIFO for all peers, 0: none (default: 20 where it may be)")
@@ -89,11 +91,10 @@ void add_bench_latency(CLI::App& bench, Run& run_chosen) {
   verb.add_option("--patience", measure.patience_s, "seconds for the peers to appear")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  verb.add_option("--programs", measure.programs, "directory of the bench_peer_* programs (default: beside this one)");
+  verb.add_option("--programs", measure.programs,
+                  "directory of the bench_peer_* programs (default: beside this one)");
   verb.add_option("--seed", measure.seed, "of the confidence intervals")->capture_default_str();
-  verb.add_option("--json", options->files.json, "file for the figures");
-  verb.add_option("--csv", options->files.csv, "file for the raw samples");
-  verb.add_option("--html", options->files.html, "file for the page with distributions");
+  add_report_options(verb, options->files);
   on_chosen(verb, run_chosen, [options, &verb] { return run(*options, verb); });
 }
 

@@ -13,6 +13,7 @@
 #include "deploy/command/demo_flight.hpp"
 #include "deploy/command/demo_report.hpp"
 #include "deploy/command/demo_view.hpp"
+#include "deploy/hangup.hpp"
 #include "deploy/net/net.hpp"
 #include "deploy/supervisor/module_plan.hpp"
 
@@ -82,6 +83,8 @@ int fly_demo(const DemoOptions& given) {
 
   runtime::StopFlag stop;
   const runtime::StopOnSignals on_signals(stop);
+  const StopOnHangup on_hangup(stop);
+  const IgnoredSignals ignored({SIGPIPE});  // children end by our hand also when nobody reads
   Launches launches = value_or_throw(claim_all(fleet.plans));
   write_files(fleet.files);
   start_fleet(fleet, launches);

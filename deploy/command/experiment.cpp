@@ -11,6 +11,7 @@
 
 #include "deploy/command/measurement.hpp"
 #include "deploy/experiments/experiment.hpp"
+#include "deploy/hangup.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -67,6 +68,7 @@ Measurement make_measurement(const Options& options, const ExperimentConfig& con
 int run(const Options& options) {
   ok_or_throw(check_measurement_file(options.json));
   const ExperimentConfig config = make_config(options);
+  const IgnoredSignals ignored({SIGPIPE});  // the figures go to their file also when nobody reads the table
   const bool live = ::isatty(STDERR_FILENO) != 0;
   const auto began = std::chrono::steady_clock::now();
   const Figures figures = run_experiment(*options.experiment, config, options.jobs, [&](std::uint32_t finished) {

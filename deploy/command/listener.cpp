@@ -19,11 +19,14 @@ std::vector<TopicEntry const*> distinct(std::vector<const TopicEntry*> topics) {
 
 }  // namespace
 
-Listener::Listener(const RingOptions& ring, const std::string& tool, const std::vector<const TopicEntry*>& topics)
+Listener::Listener(const RingOptions& ring, const std::string& tool, const std::vector<const TopicEntry*>& topics,
+                   std::uint32_t depth)
     : participant_(participant_config(ring, tool)) {
   ring_ = describe(ring, participant_.config());
   for (const TopicEntry* topic : distinct(topics)) {
-    ears_.push_back({topic, participant_.create_raw_reader(topic->info)});
+    bus::TopicInfo info = topic->info;
+    info.depth = depth;
+    ears_.push_back({topic, participant_.create_raw_reader(info)});
   }
 }
 
@@ -85,6 +88,9 @@ std::string Listener::account() const {
     sum.replaced += s.replaced;
     sum.dropped_malformed += s.dropped_malformed;
     sum.dropped_overflow += s.dropped_overflow;
+    sum.vendor_lost += s.vendor_lost;
+    sum.vendor_rejected += s.vendor_rejected;
+    sum.vendor_replaced += s.vendor_replaced;
   }
   std::string text = "received " + std::to_string(sum.received);
   const auto add = [&](const char* what, std::uint64_t count) {
@@ -93,7 +99,11 @@ std::string Listener::account() const {
   add("dropped as malformed", sum.dropped_malformed);
   add("dropped over the queue's bound", sum.dropped_overflow);
   add("replaced by a newer one before this tool could take it", sum.replaced);
-  return text + (sum.dropped() + sum.replaced == 0 ? ", none dropped" : "");
+  add("lost on the way", sum.vendor_lost);
+  add("rejected by the vendor", sum.vendor_rejected);
+  add("replaced in the vendor's history", sum.vendor_replaced);
+  const std::uint64_t missed = sum.dropped() + sum.dropped_by_vendor() + sum.replaced + sum.vendor_replaced;
+  return text + (missed == 0 ? ", none dropped" : "");
 }
 
 int listen(Listener& listener, const TopicEntry& topic, const Session& session,

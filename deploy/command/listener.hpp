@@ -26,8 +26,9 @@ struct Arrival {
 
 class Listener {
  public:
-  /// Joins the ring; throws BadInput.
-  Listener(const RingOptions& ring, const std::string& tool, const std::vector<const TopicEntry*>& topics);
+  /// Joins the ring; throws BadInput. `depth`: samples of each key that wait at the most until the tool takes them.
+  Listener(const RingOptions& ring, const std::string& tool, const std::vector<const TopicEntry*>& topics,
+           std::uint32_t depth = 0);
 
   /// Gives each arrival to `on_arrival` until that returns false, a signal asks to stop, or `limit` is over;
   /// `on_tick` is called each `tick`.

@@ -12,7 +12,7 @@
 
 int main(int argc, char** argv) {
   using namespace eciton::deploy;
-  return run_command_line(argc, argv,
-                          {&add_fly, &add_up, &add_down, &add_status, &add_demo, &add_net, &add_experiment,
-                           &add_topic, &add_bench});
+  return run_command_line(
+      argc, argv,
+      {&add_fly, &add_up, &add_down, &add_status, &add_demo, &add_net, &add_experiment, &add_topic, &add_bench});
 }

@@ -10,6 +10,7 @@
 #include "core/bus/plugin_loader.hpp"
 #include "deploy/command/measurement.hpp"
 #include "deploy/command/module_ear.hpp"
+#include "deploy/net/hosts.hpp"
 #include "deploy/supervisor/running_modules.hpp"
 
 namespace eciton::deploy {
@@ -63,6 +64,7 @@ std::vector<Watched> listen(const StatusOptions& options, const std::vector<Runn
   std::vector<Watched> watched;
   for (const RunningModule& module : modules) {
     if (module.module_id == 0) continue;
+    const net::InNamespace inside(module.network_namespace);
     const std::string vendor = options.vendor.empty() ? bus::chosen_vendor("cyclonedds") : options.vendor;
     watched.push_back(
         {module, std::make_unique<ModuleEar>(bus::ParticipantConfig{.vendor = vendor,
@@ -99,6 +101,7 @@ std::string chain_text(const msg::ChainView& view) {
 void print_states(const Watched& w) {
   std::printf("%s  (id %u, domain %u on %s", w.module.name.c_str(), w.module.module_id, w.module.domain,
               w.module.network_interface.c_str());
+  if (!w.module.network_namespace.empty()) std::printf(" in %s", w.module.network_namespace.c_str());
   if (w.module.holder != 0) std::printf(", up by process %d", static_cast<int>(w.module.holder));
   std::printf(")\n");
   if (w.ear->heartbeats().empty()) {

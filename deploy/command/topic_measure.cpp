@@ -151,7 +151,9 @@ class Measuring {
 int measure(const TopicOptions& options, const Quantity& quantity) {
   ok_or_throw(check_measurement_file(options.json_file));
   const TopicEntry& topic = find_topic(options.topic);
-  Listener listener(options.ring, std::string("eciton ") + quantity.command, {&topic});
+  // What is measured is the topic, not this tool: half a second of the fastest topic, 500 Hz, may wait for it.
+  constexpr std::uint32_t depth = 256;
+  Listener listener(options.ring, std::string("eciton ") + quantity.command, {&topic}, depth);
   Measuring measuring(options, quantity);
   const int status = listen(
       listener, topic, {.count = options.count, .seconds = options.seconds, .tick_s = options.window_s},

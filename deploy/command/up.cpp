@@ -12,6 +12,7 @@
 #include "core/base/wall_clock.hpp"
 #include "core/runtime/stop_signal.hpp"
 #include "deploy/command/detach.hpp"
+#include "deploy/hangup.hpp"
 #include "deploy/module_config.hpp"
 #include "deploy/supervisor/launch_loop.hpp"
 #include "deploy/supervisor/module_plan.hpp"
@@ -107,6 +108,8 @@ int bring_up(const UpOptions& options) {
   if (detached.is_parent()) return detached.wait_for_start();
   runtime::StopFlag stop;
   const runtime::StopOnSignals on_signals(stop);
+  // A robot does not stop because the session that started it drops, or nobody reads any more.
+  const IgnoredSignals ignored({SIGHUP, SIGPIPE});
   try {
     const std::vector<LaunchPlan> plans = plan_all(options);
     ok_or_throw(check_vendors(plans));
@@ -126,7 +129,8 @@ int bring_up(const UpOptions& options) {
 
 void add_up(CLI::App& app, Run& run) {
   const auto options = std::make_shared<UpOptions>();
-  CLI::App* sub = app.add_subcommand("up", "run the processes of modules, restarting what ends");
+  CLI::App* sub =
+      app.add_subcommand("up", "run the processes of modules, restarting what ends, also when the terminal hangs up");
   sub->add_option("MODULE.yaml", options->files, "one file per module")->required();
   sub->add_option("--world", options->world_file, "a simulated world for them, as eciton-world takes it");
   sub->add_option("--set", options->assignments, "key=value, over all the files")->allow_extra_args(false);

@@ -1,8 +1,10 @@
 // Trials in processes of their own: the simulated network is one per process, and a trial that crashes takes
 // nothing with it.
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -47,9 +49,13 @@ Worker start(const Experiment& experiment, const ExperimentConfig& config, std::
   int ends[2];
   if (::pipe(ends) != 0) throw std::runtime_error("no pipe for a trial's process: too many open files");
   std::fflush(nullptr);
+  const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
   if (pid < 0) throw std::runtime_error("no process for a trial: the system refuses to fork");
   if (pid == 0) {
+    // Whatever ends the experiment, a hang-up too, ends its trials.
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(1);  // it died before the call above
     ::close(ends[0]);
     write_all(ends[1], run_to_text(experiment, config, trial));
     ::_exit(0);

@@ -44,9 +44,12 @@ int run(int argc, char** argv) {
   for (const std::string& name : options.names) {
     services.push_back(deploy::make_service(name, config, ring, swarm ? &*swarm : nullptr));
   }
-  const auto executor = make_executor(
-      config, {.module_id = config.id, .process = process, .realtime_priority = config.realtime_priority},
-      participants);
+  const auto executor = make_executor(config,
+                                      {.module_id = config.id,
+                                       .process = process,
+                                       .realtime_priority = config.realtime_priority,
+                                       .checkpoints = options.checkpoints},
+                                      participants);
   for (const auto& service : services) executor->add(*service);
   executor->run(stop);
   return 0;

@@ -69,7 +69,8 @@ int run(int argc, char** argv) {
   start_log("world", options.log_level);
   const bool wall = file.pace == "wall";
   // On the wall clock the world's stamps are the modules' own time.
-  if (wall && file.world.start_ns == 0) file.world.start_ns = static_cast<std::uint64_t>(to_ns(wall_now()));
+  const bool own_time = wall && file.world.start_ns == 0;
+  if (own_time) file.world.start_ns = static_cast<std::uint64_t>(to_ns(wall_now()));
 
   runtime::StopFlag stop;
   const runtime::StopOnSignals on_signals(stop);
@@ -86,6 +87,8 @@ int run(int argc, char** argv) {
       observers.push_back(std::make_unique<TruthObserver>(file, module));
     }
   }
+  // What came before took its time, on a busy machine more than samples live: they would be stale for good.
+  if (own_time) world.skip(wall_now() - world.now());
   TimePoint truth_due = world.now();
   server.set_observer([&](const hal::sim::World& seen, TimePoint now) {
     if (stop.requested()) server.stop();

@@ -3,7 +3,10 @@
 #include "deploy/net/net.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,7 +28,8 @@ const fs::path nets_root = "/run/eciton-net";
 constexpr const char* spec_name = "spec";
 constexpr const char* socket_name = "control";
 constexpr int relay_priority = 10;  // a radio does not wait for the computers it joins
-constexpr Duration down_patience = std::chrono::seconds(6), poll_period = std::chrono::milliseconds(10);
+constexpr Duration down_patience = std::chrono::seconds(6), start_patience = std::chrono::seconds(20),
+                   poll_period = std::chrono::milliseconds(10);
 
 std::vector<fs::path> namespaces_of(const NetSpec& spec) {
   std::vector<fs::path> files;
@@ -93,6 +97,44 @@ std::vector<std::string> host_names(std::uint32_t modules) {
   return names;
 }
 
+/// Waits for the end of a process that is not ours to reap.
+bool ends_within(int pidfd, Duration patience) {
+  pollfd end{pidfd, POLLIN, 0};
+  return ::poll(&end, 1, static_cast<int>(patience / 1ms)) > 0;
+}
+
+/// It is asked; one that does not even answer hangs, or is stopped, and is killed.
+Status end_relay(const std::string& name, pid_t relay) {
+  const auto pidfd = static_cast<int>(::syscall(SYS_pidfd_open, relay, 0));
+  if (pidfd < 0) return ok();  // gone already
+  const auto answer = ask(nets_root / name / socket_name, down_request);
+  bool ended = answer && ends_within(pidfd, down_patience);
+  if (!ended) {
+    ::syscall(SYS_pidfd_send_signal, pidfd, SIGKILL, nullptr, 0);
+    ended = ends_within(pidfd, down_patience);
+  }
+  ::close(pidfd);
+  if (ended) return ok();
+  return Error{"net " + name + " does not end, and its relay (process " + std::to_string(relay) +
+               ") cannot be killed"};
+}
+
+/// An Error when the relay ends, or takes too long.
+Result<deploy::ChildProcess> start_and_wait(const NetSpec& spec, const fs::path& programs, const fs::path& log) {
+  auto relay = deploy::ChildProcess::start({.arguments = relay_call(spec, programs), .log_file = log});
+  const Duration end = monotonic_now() + start_patience;
+  while (relay && !wait_until_up(spec.name, poll_period)) {
+    if (relay->take_end()) {
+      const auto words = deploy::last_lines(log, 1);
+      return Error{words.empty() ? "net " + spec.name + ": its relay ended at once" : words[0]};
+    }
+    if (monotonic_now() < end) continue;
+    relay->signal(SIGTERM);
+    return Error{"net " + spec.name + " is not up after " + std::to_string(start_patience / 1s) + " s"};
+  }
+  return relay;
+}
+
 std::string names_of(const std::vector<KnownNet>& nets) {
   std::string text;
   for (const KnownNet& net : nets) text += (text.empty() ? "" : ", ") + net.spec.name + (net.up ? "" : " (killed)");
@@ -146,18 +188,7 @@ void run_net(const NetSpec& spec, runtime::StopFlag& stop, const std::function<v
 Status take_down(const std::string& name) {
   const fs::path directory = nets_root / name;
   if (deploy::is_held(directory)) {
-    const pid_t relay = holder_of(name);
-    // One that does not even answer hangs, or is stopped.
-    const auto answer = ask(directory / socket_name, down_request);
-    const Duration end = monotonic_now() + (answer ? down_patience : Duration::zero());
-    while (deploy::is_held(directory) && monotonic_now() < end) std::this_thread::sleep_for(poll_period);
-    if (deploy::is_held(directory)) {
-      if (relay <= 1 || ::kill(relay, SIGKILL) != 0)
-        return Error{"net " + name + " does not end, and its relay (process " + std::to_string(relay) +
-                     ") cannot be killed"};
-      const Duration killed = monotonic_now() + down_patience;
-      while (deploy::is_held(directory) && monotonic_now() < killed) std::this_thread::sleep_for(poll_period);
-    }
+    if (const Status ended = end_relay(name, holder_of(name)); !ended) return ended;
   }
   std::error_code none;
   if (!fs::exists(directory, none)) return ok();
@@ -209,30 +240,13 @@ Result<OwnedNet> OwnedNet::start(const NetSpec& spec, const fs::path& programs) 
   if (const Status rights = check_rights(); !rights) return rights.error();
   if (const pid_t holder = holder_of(spec.name); holder != 0)
     return Error{"net " + spec.name + " is up already, carried by process " + std::to_string(holder)};
-  std::string log = (fs::temp_directory_path() / "eciton-net-XXXXXX").string();
-  const int fd = ::mkstemp(log.data());
-  if (fd < 0) return Error{"no log file can be made in " + fs::temp_directory_path().string()};
-  ::close(fd);
-  auto relay = deploy::ChildProcess::start({.arguments = relay_call(spec, programs), .log_file = log});
-  if (!relay) {
-    fs::remove(log);
-    return relay.error();
-  }
-  OwnedNet net(spec, std::make_unique<deploy::ChildProcess>(std::move(relay).value()));
-  const Duration end = monotonic_now() + down_patience;
-  Status status = Error{"net " + spec.name + " does not start"};
-  while (monotonic_now() < end && !status) {
-    if (net.relay_->take_end()) {
-      const auto words = deploy::last_lines(log, 1);
-      status = Error{words.empty() ? "net " + spec.name + ": its relay ended at once" : words[0]};
-      fs::remove(log);
-      return status.error();
-    }
-    status = wait_until_up(spec.name, poll_period);
-  }
-  fs::remove(log);
-  if (!status) return status.error();
-  return net;
+  // Its words are kept in memory: no file is left whoever is killed.
+  const int memory = ::memfd_create("eciton-net", MFD_CLOEXEC);
+  if (memory < 0) return Error{"no log can be kept in memory for net " + spec.name};
+  auto result = start_and_wait(spec, programs, "/proc/self/fd/" + std::to_string(memory));
+  ::close(memory);
+  if (!result) return result.error();
+  return OwnedNet(spec, std::make_unique<deploy::ChildProcess>(std::move(result).value()));
 }
 
 OwnedNet::~OwnedNet() {

@@ -35,7 +35,12 @@ Launch::Launch(LaunchPlan plan, RuntimeDirectory directory, std::vector<HostClai
     : plan_(std::move(plan)),
       claims_(std::move(claims)),
       directory_(std::move(directory)),
-      supervisor_(SupervisorConfig{.log_directory = directory_.path()}) {}
+      supervisor_(SupervisorConfig{.log_directory = directory_.path()}) {
+  for (PlannedProcess& process : plan_.processes) {
+    if (!process.has_checkpoints) continue;
+    process.child.arguments.insert(process.child.arguments.end(), {"--checkpoints", directory_.path().string()});
+  }
+}
 
 Launch::~Launch() { supervisor_.stop_all(); }
 
@@ -61,6 +66,7 @@ void Launch::write_state() {
                       .module_id = plan_.module_id,
                       .domain = plan_.domain,
                       .network_interface = plan_.network_interface,
+                      .network_namespace = plan_.network_namespace,
                       .processes = {}};
   const std::vector<ChildReport> reports = supervisor_.reports();
   for (std::size_t k = 0; k < reports.size(); ++k) {

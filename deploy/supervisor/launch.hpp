@@ -17,6 +17,7 @@ struct PlannedProcess {
   std::string name;    // "control"; "services" when composed
   std::string vendor;  // empty: it uses none
   ChildSpec child;
+  bool has_checkpoints = false;  // in the launch's directory: `--checkpoints` is added to its arguments
 };
 
 struct LaunchPlan {

@@ -42,6 +42,8 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
     const bool composed = config.layout == "composed";
     plan.processes.push_back(plan_process(name, config, programs / "eciton-service", config_file, assignments,
                                           composed ? all : std::vector<std::string>{name}));
+    // In lockstep nothing is restarted: the world waits for the dead.
+    plan.processes.back().has_checkpoints = config.clock == "wall";
   }
   return plan;
 }

@@ -15,6 +15,7 @@ RunningModule from_json(const Json& json) {
                        .module_id = json.at("module_id"),
                        .domain = json.at("domain"),
                        .network_interface = json.at("interface"),
+                       .network_namespace = json.at("namespace"),
                        .processes = {}};
   for (const Json& process : json.at("processes")) {
     module.processes.push_back({.name = process.at("name"),
@@ -38,6 +39,7 @@ std::string to_text(const RunningModule& module) {
                   {"module_id", module.module_id},
                   {"domain", module.domain},
                   {"interface", module.network_interface},
+                  {"namespace", module.network_namespace},
                   {"processes", processes}};
   return json.dump(2) + "\n";
 }

@@ -26,6 +26,7 @@ struct RunningModule {
   std::uint32_t module_id = 0;  // 0: a world or a demo
   std::uint32_t domain = 0;
   std::string network_interface;
+  std::string network_namespace{};  // of that interface; empty: this host's own
   std::vector<RunningProcess> processes;
 };
 

@@ -56,10 +56,11 @@ void Supervisor::note_end(Child& child, const ProcessEnd& end) {
     child.report.state = ChildState::refused;
     return;
   }
-  if (now - child.started >= config_.steady) child.backoff = config_.backoff_min;
   child.report.state = ChildState::waiting;
-  child.restart_at = now + child.backoff;
-  child.backoff = std::min(2 * child.backoff, config_.backoff_max);
+  // What ran long enough is needed back at once; what keeps ending waits longer each time.
+  const bool steady = now - child.started >= config_.steady;
+  child.restart_at = steady ? now : now + child.backoff;
+  child.backoff = steady ? config_.backoff_min : std::min(2 * child.backoff, config_.backoff_max);
 }
 
 void Supervisor::check(const std::function<void(const ChildReport&)>& on_end) {

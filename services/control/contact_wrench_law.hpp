@@ -56,6 +56,11 @@ class ContactWrenchLaw {
   const robot::Wrench& feed_forward_W() const { return feed_forward_W_; }
   bool clamped() const { return clamped_; }
 
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.feed_forward_W_, self.paper_wait_s_, self.clamped_);
+  }
+
  private:
   void add(const robot::Wrench& step);
 

@@ -32,6 +32,7 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
       allocator_(airframe),
       module_state_(ring.create_reader(topics::module_state)),
       joint_state_(ring.create_reader(topics::joint_state)),
+      rotor_state_(ring.create_reader(topics::rotor_state)),
       external_wrench_(ring.create_reader(topics::external_wrench)),
       contact_wrench_(ring.create_reader(topics::contact_wrench)),
       chain_view_(ring.create_reader(topics::chain_view)),
@@ -47,24 +48,58 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
 }
 
 void ControlService::step(TimePoint now) noexcept {
-  if (first_step_) epoch_ = now;
+  if (first_step_ && !loaded_) epoch_ = now;
   take_state(now);
   take_surroundings();
   take_chain(now);
   take_wrenches(now);
+  const bool acts = settled(now);
   judge(now);
   take_requests(now);
   take_flight_goals(now);
   take_morph_goals(now);
-  follow_mode(now);
-  if (flying(mode_)) {
-    write_rotors(now);
-  } else {
+  if (acts) {
+    follow_mode(now);
+    if (flying(mode_)) {
+      write_rotors(now);
+    } else {
+      write_idle(now);
+    }
+  } else if (mode_ == FlightMode::stopped) {
     write_idle(now);
   }
   report_mode(now);
   last_step_ = now;
   first_step_ = false;
+}
+
+void ControlService::load_state(runtime::StateReader& reader) noexcept {
+  visit_state(*this, reader);
+  loaded_ = true;
+  saved_at_ = last_step_;
+  reported_mode_ = mode_;
+}
+
+bool ControlService::settled(TimePoint now) noexcept {
+  // The first command decides whether rotors that turn go on turning. Until it is known, silence: the hardware host
+  // flies the module by itself.
+  if (settled_) return true;
+  if (!rotors_armed_) return false;
+  if (!*rotors_armed_) {
+    if (mode_ != FlightMode::stopped) mode_ = FlightMode::disarmed;
+    settled_ = true;
+    return true;
+  }
+  // A state of this start, fresh enough to fly by.
+  if (state_at_ == TimePoint{}) return false;
+  if (!loaded_ || !flying(mode_) || now - saved_at_ > runtime::resume_within) {
+    // Nothing to go on from: the hardware host brings it down, and we wait for that.
+    if (mode_ != FlightMode::stopped) mode_ = FlightMode::disarmed;
+    loaded_ = false;
+    return false;
+  }
+  settled_ = true;
+  return true;
 }
 
 void ControlService::take_state(TimePoint now) noexcept {
@@ -95,6 +130,9 @@ void ControlService::take_surroundings() noexcept {
     for (std::size_t k = 0; k < airframe_.joints.size() && k < joints.joints.size(); ++k) {
       joint_rad_[k] = joints.joints[k].position_rad;
     }
+  }
+  while (const auto sample = rotor_state_.take()) {
+    if (sample->value.module_id == config_.module_id) rotors_armed_ = sample->value.armed;
   }
   while (const auto sample = docking_state_.take()) {
     if (sample->value.module_id == config_.module_id) docking_ = sample->value;
@@ -311,13 +349,15 @@ void ControlService::judge(TimePoint now) noexcept {
       mode_ == FlightMode::land && touchdown_.update(allocation_.achieved_B.force.norm(),
                                                      airframe_.mass_kg * robot::gravity_m_s2, motion_.v_WM.z(), dt_s);
   conditions_.duplicate_id = duplicate_id_;
+  conditions_.rotors_known = settled_;
 }
 
 void ControlService::follow_mode(TimePoint now) noexcept {
   const FlightMode before = mode_;
   mode_ = advance(before, conditions_).mode;
   if (before == FlightMode::failsafe && mode_ == FlightMode::hover) {
-    reference_.hold({motion_.p_WM, upright(motion_.R_WM)});
+    // Apart it stays where it drifted to; a member of a chain goes back to its place in it.
+    if (!in_chain()) reference_.hold({motion_.p_WM, upright(motion_.R_WM)});
     pose_control_.reset();
   }
   const bool done = goal_pending_ && (conditions_.trajectory_finished || conditions_.landed);

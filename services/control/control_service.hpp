@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "core/base/config.hpp"
@@ -49,6 +50,9 @@ class ControlService final : public runtime::Service {
     return runtime::on(module_state_, from_s(config_.period_s), runtime::Phase::control);
   }
   void step(TimePoint now) noexcept override;
+  std::uint32_t state_version() const noexcept override { return 1; }
+  void save_state(runtime::StateWriter& writer) const noexcept override { visit_state(*this, writer); }
+  void load_state(runtime::StateReader& reader) noexcept override;
   void describe(msg::Heartbeat& heartbeat) const noexcept override { heartbeat.flight_mode = to_message(mode_); }
 
  private:
@@ -56,6 +60,15 @@ class ControlService final : public runtime::Service {
   double seconds(TimePoint t) const { return to_s(t - epoch_); }
   std::span<const double> joint_angles() const { return std::span(joint_rad_).first(airframe_.joints.size()); }
 
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.mode_, self.reference_, self.pose_control_, self.law_, self.feedback_, self.allocator_, self.epoch_,
+      self.last_step_, self.view_, self.goal_, self.goal_pending_, self.answered_mode_, self.answered_flight_,
+      self.answered_morph_);
+  }
+
+  /// After a start: whether it is known what the rotors do and what follows from it.
+  bool settled(TimePoint now) noexcept;
   void take_state(TimePoint now) noexcept;
   void take_surroundings() noexcept;
   void take_chain(TimePoint now) noexcept;
@@ -93,7 +106,11 @@ class ControlService final : public runtime::Service {
   TimePoint epoch_{};  // of `seconds`: the first step
   TimePoint last_step_{};
   bool first_step_ = true;
-  msg::ModuleState state_;  // the newest
+  bool loaded_ = false;   // from a checkpoint, ...
+  TimePoint saved_at_{};  // ... of then
+  bool settled_ = false;
+  std::optional<bool> rotors_armed_;  // as the hardware host says
+  msg::ModuleState state_;            // the newest
   TimePoint state_at_{};
   ModuleMotion motion_;  // extrapolated to now
   std::array<double, robot::joints_max> joint_rad_{};
@@ -119,6 +136,7 @@ class ControlService final : public runtime::Service {
 
   bus::Reader<msg::ModuleState> module_state_;
   bus::Reader<msg::JointState> joint_state_;
+  bus::Reader<msg::RotorState> rotor_state_;
   bus::Reader<msg::ExternalWrench> external_wrench_;
   bus::Reader<msg::ContactWrench> contact_wrench_;
   bus::Reader<msg::ChainView> chain_view_;

@@ -35,6 +35,11 @@ class DisturbanceFeedback {
   void reset() { held_W_ = {}; }
   robot::Wrench feed_forward_W() const { return -held_W_; }
 
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.held_W_);
+  }
+
  private:
   DisturbanceFeedbackConfig config_;
   robot::Wrench held_W_;

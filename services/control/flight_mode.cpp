@@ -21,6 +21,7 @@ FlightDecision decide_arm(FlightMode mode, const FlightConditions& now, const Fl
   if (mode == FlightMode::stopped) return refused(mode, "stopped; disarm first");
   if (mode != FlightMode::disarmed) return refused(mode, "already flying");
   if (now.duplicate_id) return refused(mode, "another module has this id; change one");
+  if (!now.rotors_known) return refused(mode, "the hardware host says nothing, or is flying it down; wait");
   if (const char* fault = state_fault(now, config)) return refused(mode, fault);
   return granted(FlightMode::armed);
 }

@@ -25,6 +25,7 @@ struct FlightConditions {
   bool trajectory_finished = false;
   bool landed = false;
   bool duplicate_id = false;  // another module carries our id
+  bool rotors_known = true;   // false: just started, and they may be turning under the hardware host's safe output
   bool emergency_descent_over = false;
 };
 

@@ -56,6 +56,12 @@ class FlightReference {
   /// Whether the last motion has come to its end.
   bool arrived(double now_s) const;
 
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.kind_, self.motion_, self.tracked_, self.tracked_s_, self.in_chain_, self.place_, self.offset_p_,
+      self.offset_R_, self.joints_);
+  }
+
  private:
   enum class Kind { motion, track, descend };
 

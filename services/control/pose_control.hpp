@@ -16,6 +16,11 @@ using robot::Wrench;
 struct PoseGains {
   Vector3 kp_1_s2, ki_1_s3, kd_1_s;
   Vector3 ap_1_s2, ai_1_s3, ad_1_s;
+
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.kp_1_s2, self.ki_1_s3, self.kd_1_s, self.ap_1_s2, self.ai_1_s3, self.ad_1_s);
+  }
 };
 
 /// P1: assembled flight; P3: free flight and docking. Flown in simulation at 500 Hz behind actuator lags of
@@ -63,9 +68,14 @@ class PoseControl {
 
   Vector3 integral_m_s2() const { return integral_m_s2_; }
   Vector3 integral_rad_s2() const { return integral_rad_s2_; }
-  /// For a hand-over, as from a checkpoint.
   void set_integrals(const Vector3& linear_m_s2, const Vector3& angular_rad_s2);
   const PoseGains& gains() const { return gains_; }  // in force now, in the middle of a change too
+
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.gains_, self.gains_from_, self.gains_to_, self.blend_s_, self.blending_, self.integral_m_s2_,
+      self.integral_rad_s2_);
+  }
 
  private:
   PoseControlConfig config_;

@@ -34,7 +34,10 @@ EstimationService::EstimationService(bus::Participant& ring, const EstimationCon
       contact_wrench_(ring.create_writer(topics::contact_wrench)),
       event_(ring.create_writer(topics::event)) {}
 
+void EstimationService::load_state(runtime::StateReader& reader) noexcept { reader(saved_at_, zeroing_); }
+
 void EstimationService::step(TimePoint now) noexcept {
+  if (first_step_ && now - saved_at_ > runtime::resume_within) zeroing_ = Zeroing();
   take_chain(now);
   take_actuators();
   take_sensors();

@@ -42,6 +42,10 @@ class EstimationService final : public runtime::Service {
     return runtime::on(imu_, 5ms, runtime::Phase::estimate);
   }
   void step(TimePoint now) noexcept override;
+  /// The zero, which cannot be measured again in a chain.
+  std::uint32_t state_version() const noexcept override { return 1; }
+  void save_state(runtime::StateWriter& writer) const noexcept override { writer(last_step_, zeroing_); }
+  void load_state(runtime::StateReader& reader) noexcept override;
 
  private:
   void take_actuators() noexcept;
@@ -84,6 +88,7 @@ class EstimationService final : public runtime::Service {
   bool zeroing_interrupted_ = false;
 
   TimePoint last_step_{};
+  TimePoint saved_at_{};  // of the checkpoint it goes on from
   TimePoint wrench_due_{};
   bool first_step_ = true;
   msg::EstimatorMode reported_mode_ = msg::EstimatorMode::initialising;

@@ -23,12 +23,6 @@ void Zeroing::start() {
   phase_ = ZeroingPhase::measuring;
 }
 
-void Zeroing::set_bias(const WrenchBias& bias, double quality_N) {
-  bias_ = bias;
-  quality_N_ = quality_N;
-  zeroed_ = true;
-}
-
 void Zeroing::close_batch() {
   const Vector6 mean = batch_sum_ / batch_samples_;
   mean_sum_ += mean;

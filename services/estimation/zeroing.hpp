@@ -25,6 +25,10 @@ struct WrenchBias {
   robot::Vector3 force_W = robot::Vector3::Zero();
   robot::Vector3 moment_M = robot::Vector3::Zero();
 
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.force_W, self.moment_M);
+  }
   robot::Wrench take_off(const robot::Wrench& wrench_W, const robot::Matrix3& R_WM) const {
     return {wrench_W.force - force_W, wrench_W.moment - R_WM * moment_M};
   }
@@ -46,12 +50,16 @@ class Zeroing {
   const char* reason() const { return reason_; }
   bool zeroed() const { return zeroed_; }
   const WrenchBias& bias() const { return bias_; }
-  /// Takes a bias over, as from a checkpoint.
-  void set_bias(const WrenchBias& bias, double quality_N);
   /// Standard deviation of the bias itself, from the spread of the batches; the worst axis.
   double quality_N() const { return quality_N_; }
   double quality_Nm() const { return quality_Nm_; }
   int interruptions() const { return interruptions_; }
+
+  /// The bias in force; a measurement under way begins again.
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.zeroed_, self.bias_, self.quality_N_, self.quality_Nm_);
+  }
 
  private:
   void begin();

@@ -24,12 +24,25 @@ JointsService::JointsService(bus::Participant& ring, const JointsConfig& config,
       goal_status_(ring.create_writer(topics::goal_status)) {}
 
 void JointsService::step(TimePoint now) noexcept {
-  if (first_step_) epoch_ = now;
+  if (first_step_) begin(now);
   first_step_ = false;
   take_joints(now);
   take_chain(now);
   take_goals(now);
   if (measured_) write(now);
+  last_step_ = now;
+}
+
+void JointsService::load_state(runtime::StateReader& reader) noexcept {
+  visit_state(*this, reader);
+  loaded_ = true;
+}
+
+void JointsService::begin(TimePoint now) noexcept {
+  if (loaded_ && now - last_step_ <= runtime::resume_within) return;
+  epoch_ = now;
+  measured_ = in_chain_ = goal_pending_ = false;
+  view_ = {};
 }
 
 void JointsService::take_joints(TimePoint now) noexcept {

@@ -31,9 +31,19 @@ class JointsService final : public runtime::Service {
     return runtime::every(from_s(1 / config_.rate_Hz), runtime::Phase::coordinate);
   }
   void step(TimePoint now) noexcept override;
+  std::uint32_t state_version() const noexcept override { return 1; }
+  void save_state(runtime::StateWriter& writer) const noexcept override { visit_state(*this, writer); }
+  void load_state(runtime::StateReader& reader) noexcept override;
 
  private:
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.last_step_, self.epoch_, self.trajectory_, self.place_, self.measured_, self.in_chain_, self.view_,
+      self.goal_, self.goal_pending_, self.answered_);
+  }
+
   double seconds(TimePoint t) const { return to_s(t - epoch_); }
+  void begin(TimePoint now) noexcept;
   void take_joints(TimePoint now) noexcept;
   void take_chain(TimePoint now) noexcept;
   void enter_chain(TimePoint now) noexcept;
@@ -49,7 +59,9 @@ class JointsService final : public runtime::Service {
   bool measured_ = false;              // our own positions are known: nothing is commanded before
   bool in_chain_ = false;
   TimePoint epoch_{};
+  TimePoint last_step_{};
   bool first_step_ = true;
+  bool loaded_ = false;                                      // from a checkpoint
   msg::ChainView view_;                                      // the active one
   std::array<msg::JointState, robot::members_max> heard_{};  // peers' joints
   msg::JointState own_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "services/radio/rate_limit.hpp"
+
 namespace eciton::radio {
 namespace {
 
@@ -26,10 +28,9 @@ struct RadioService::Route {
   bus::RawWriter to_swarm;
   bus::RawReader from_swarm;
   bus::RawWriter to_ring;
-  Duration interval;
+  RateLimit limit;
   bool goal;
   bool near_only;
-  TimePoint due{};
   RadioService* radio = nullptr;
 };
 
@@ -75,7 +76,7 @@ void RadioService::add_route(const bus::TopicInfo& topic) {
                      .to_swarm = swarm_.create_raw_writer(topic),
                      .from_swarm = swarm_.create_raw_reader(topic),
                      .to_ring = ring_.create_raw_writer(topic),
-                     .interval = pace,
+                     .limit = RateLimit(pace),
                      .goal = goal,
                      .near_only = wrench || joints,
                      .radio = this});
@@ -89,7 +90,9 @@ void RadioService::step(TimePoint now) noexcept {
     forward_out(route);
     forward_in(route);
   }
-  if (now >= beacon_due_) send_beacon(now);
+  // Further ahead than any period: the clock was set back.
+  const Duration longest = from_s(std::max(config_.beacon_period_s, config_.beacon_near_period_s));
+  if (now >= beacon_due_ || beacon_due_ > now + longest) send_beacon(now);
 }
 
 void RadioService::forward_out(Route& route) noexcept {
@@ -97,13 +100,10 @@ void RadioService::forward_out(Route& route) noexcept {
       [](void* context, std::span<const std::uint8_t> cdr) {
         auto& r = *static_cast<Route*>(context);
         RadioService& radio = *r.radio;
-        if (r.goal || module_of(r.from_ring.topic(), cdr) != radio.config_.module_id) return;
+        const std::uint32_t module = module_of(r.from_ring.topic(), cdr);
+        if (r.goal || module != radio.config_.module_id) return;
         if (r.near_only && !radio.near_) return;
-        if (r.interval > Duration::zero()) {
-          // A tenth of slack, so that a period that just misses its due time does not halve the rate.
-          if (radio.now_ < r.due - r.interval / 10) return;
-          r.due = std::max(r.due, radio.now_ - r.interval) + r.interval;
-        }
+        if (!r.limit.allow(radio.now_, module)) return;
         ++(r.to_swarm.write(cdr) ? radio.sent_ : radio.dropped_);
         radio.airtime_.add(radio.now_, cdr.size());
       },

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "core/bus/participant.hpp"
 #include "idl/topics.hpp"
@@ -72,20 +73,30 @@ std::vector<std::unique_ptr<OurChannel>> channels(bus::Participant& participant)
   return all;
 }
 
-/// Whether Fast DDS left a file in shared memory for this process: names have its number, low byte first.
-bool left_shared_memory(pid_t pid) {
-  std::array<char, 16> bytes{};
-  std::snprintf(bytes.data(), bytes.size(), ".%02x.%02x.", static_cast<unsigned>(pid) & 0xffu,
+std::set<std::string> shared_memory_files() {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm"))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+/// What Fast DDS left in shared memory for this process, of what was not there `before`: after the vendor's and the
+/// host's two bytes, names have the process's number, low byte first.
+std::set<std::string> left_in_shared_memory(pid_t pid, const std::set<std::string>& before) {
+  std::array<char, 16> number{};
+  std::snprintf(number.data(), number.size(), ".%02x.%02x.", static_cast<unsigned>(pid) & 0xffu,
                 static_cast<unsigned>(pid) >> 8 & 0xffu);
-  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("fast") && name.substr(0, 40).find(bytes.data()) != std::string::npos) return true;
-  }
-  return false;
+  std::set<std::string> left = shared_memory_files();
+  std::erase_if(left, [&](const std::string& name) {
+    return before.contains(name) || !name.starts_with("fast") || name.find(number.data()) == std::string::npos;
+  });
+  return left;
 }
 
 class ExchangeTest : public testing::TestWithParam<std::tuple<const char*, const char*>> {
  protected:
+  const std::set<std::string> shared_memory_before_ = shared_memory_files();
+
   static std::string peer() {
     return beside_this_program("native_" + std::string(std::get<0>(GetParam())) + "_peer");
   }
@@ -117,7 +128,7 @@ TEST_P(ExchangeTest, ANativeWriterReachesOurReaderOnEveryTopic) {
   native.close_input();
   EXPECT_TRUE(native.wait_until_end(std::chrono::seconds(5)));
   EXPECT_EQ(native.exit_status(), 0) << native.output();
-  EXPECT_FALSE(left_shared_memory(native.pid()));
+  EXPECT_EQ(left_in_shared_memory(native.pid(), shared_memory_before_), std::set<std::string>{});
 }
 
 TEST_P(ExchangeTest, OurWriterReachesANativeReaderOnEveryTopic) {
@@ -133,7 +144,7 @@ TEST_P(ExchangeTest, OurWriterReachesANativeReaderOnEveryTopic) {
   native.close_input();
   EXPECT_TRUE(native.wait_until_end(std::chrono::seconds(5)));
   EXPECT_EQ(native.exit_status(), 0) << native.output();
-  EXPECT_FALSE(left_shared_memory(native.pid()));
+  EXPECT_EQ(left_in_shared_memory(native.pid(), shared_memory_before_), std::set<std::string>{});
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, ExchangeTest,

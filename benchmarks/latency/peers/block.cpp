@@ -56,8 +56,8 @@ std::string to_text(const BlockReport& report) {
                 used.allocations, used.rss_bytes, report.refused, report.corrupt, report.stale);
   std::string text = line;
   for (const SampleRecord& each : report.records) {
-    std::snprintf(line, sizeof line, "%" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRIu32 "\n",
-                  each.planned_ns, each.ready_ns, each.sent_ns, each.received_ns, each.duplicates);
+    std::snprintf(line, sizeof line, "%" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRIu32 "\n", each.planned_ns,
+                  each.ready_ns, each.sent_ns, each.received_ns, each.duplicates);
     text += line;
   }
   return text;

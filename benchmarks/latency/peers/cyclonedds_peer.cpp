@@ -26,7 +26,8 @@ Qos make_qos(const PeerOptions& options) {
 }
 
 dds_entity_t good(dds_entity_t entity, const char* what) {
-  if (entity < 0) throw BadInput{{"Cyclone DDS cannot create a " + std::string(what) + ": " + dds_strretcode(-entity)}};
+  if (entity < 0)
+    throw BadInput{{"Cyclone DDS cannot create a " + std::string(what) + ": " + dds_strretcode(-entity)}};
   return entity;
 }
 

@@ -1,5 +1,5 @@
-// Ours: a participant, writers and readers of the framework. wake: waiting as the real-time executor does. inline: the
-// readers that call back in the vendor's thread.
+// Ours: a participant, writers and readers of the framework. wake: waiting as the real-time executor does. inline:
+// the readers that call back in the vendor's thread.
 #include "benchmarks/idl/payload.hpp"
 #include "benchmarks/latency/peers/transport.hpp"
 #include "core/base/wall_clock.hpp"

@@ -1,6 +1,6 @@
 // Native Fast DDS: its C++ API and the types that fastddsgen makes, under a participant that the plugin's own code
-// creates, so that transports, threads and discovery are the same by construction; the endpoints' QoS is the plugin's.
-// inline: a listener on the reader. wake: a WaitSet with the reader's status condition.
+// creates, so that transports, threads and discovery are the same by construction; the endpoints' QoS is the
+// plugin's. inline: a listener on the reader. wake: a WaitSet with the reader's status condition.
 #include <fastdds/dds/core/condition/GuardCondition.hpp>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 
@@ -68,9 +68,9 @@ class LaneOf final : public Lane {
     };
     const bool listens = options.delivery == Delivery::inlined;
     writer = in.publisher->create_datawriter(topic(options.role), writer_qos(options));
-    reader = in.subscriber->create_datareader(topic(other(options.role)), reader_qos(options),
-                                              listens ? this : nullptr,
-                                              listens ? fast::StatusMask::data_available() : fast::StatusMask::none());
+    reader =
+        in.subscriber->create_datareader(topic(other(options.role)), reader_qos(options), listens ? this : nullptr,
+                                         listens ? fast::StatusMask::data_available() : fast::StatusMask::none());
     if (writer == nullptr || reader == nullptr) throw BadInput{{"Fast DDS cannot create a writer and a reader"}};
     out_.module_id(1);
     fill(out_.values());

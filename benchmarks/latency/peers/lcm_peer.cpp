@@ -12,7 +12,8 @@ namespace {
 
 class LcmTransport final : public Transport {
  public:
-  LcmTransport(const PeerOptions& options, Sink& sink) : sink_(sink), own_(options.run + (options.role == Role::ping ? "_ping" : "_echo")) {
+  LcmTransport(const PeerOptions& options, Sink& sink)
+      : sink_(sink), own_(options.run + (options.role == Role::ping ? "_ping" : "_echo")) {
     const std::string url =
         "udpm://239.255.76.67:" + std::to_string(17'000 + options.domain) + "?ttl=1&recv_buf_size=1048576";
     lcm_ = ::lcm_create(url.c_str());

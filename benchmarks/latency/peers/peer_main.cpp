@@ -127,9 +127,9 @@ class Peer final : public Sink {
       while (waits() && !commands_.waiting()) transport_->wait_until(now_ns() + 1'000'000'000);
     } else if (line == "end") {
       finish();
-    } else if (std::sscanf(line.c_str(),
-                           "run %" SCNu32 " %" SCNu32 " %" SCNu32 " %" SCNd64 " %" SCNd64 " %" SCNd64, &order.bytes,
-                           &order.base, &order.count, &order.start_ns, &order.period_ns, &order.linger_ns) == 6) {
+    } else if (std::sscanf(line.c_str(), "run %" SCNu32 " %" SCNu32 " %" SCNu32 " %" SCNd64 " %" SCNd64 " %" SCNd64,
+                           &order.bytes, &order.base, &order.count, &order.start_ns, &order.period_ns,
+                           &order.linger_ns) == 6) {
       begin(order);
       send_all(order);
       finish();

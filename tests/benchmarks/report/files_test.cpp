@@ -15,6 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string csv_of(const Result& result) {
+  std::ostringstream text;
+  write_csv(text, result);
+  return text.str();
+}
+
 class ReportFilesTest : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(directory_); }
@@ -34,7 +40,7 @@ TEST_F(ReportFilesTest, WritesAllThreeAndLeavesNoDrafts) {
   EXPECT_TRUE(fs::is_empty(directory_));
   const Result result = made_up_result();
   ASSERT_TRUE(write_report_files(files, result));
-  EXPECT_EQ(text_of(files.csv), to_csv(result));
+  EXPECT_EQ(text_of(files.csv), csv_of(result));
   EXPECT_EQ(text_of(files.html), to_html(result));
   EXPECT_EQ(std::distance(fs::directory_iterator(directory_), fs::directory_iterator()), 3);
 }
@@ -69,7 +75,7 @@ TEST(ReportCsvTest, KeepsEveryRawSampleToTheLastBit) {
   Result result;
   result.samples.push_back({.name = "ours, \"wake\"", .unit = "us", .at_s = {0.001, 0.1}, .values = {0.1 + 0.2, 7}});
   result.samples.push_back({.name = "sorted", .unit = "us", .values = {1e-7}});
-  EXPECT_EQ(to_csv(result),
+  EXPECT_EQ(csv_of(result),
             "name,unit,at_s,value\n"
             "\"ours, \"\"wake\"\"\",us,0.001,0.30000000000000004\n"
             "\"ours, \"\"wake\"\"\",us,0.1,7\n"

@@ -13,7 +13,7 @@ inline Samples made_up_samples(const std::string& name, double median_us, std::s
   Samples samples{.name = name, .unit = "µs"};
   for (std::size_t i = 0; i < count; ++i) {
     const double u = (static_cast<double>(random() >> 11) + 0.5) * 0x1p-53;
-    samples.at_s.push_back(0.001 * static_cast<double>(i));
+    samples.at_s.push_back(0.001 * static_cast<double>(i) + (i < count / 3 ? 0 : 3));  // others had their turn
     samples.values.push_back(median_us * (0.9 + 0.1 * std::pow(u, -0.45)));
   }
   samples.sent = count + 3;
@@ -50,6 +50,12 @@ inline Result made_up_result() {
     }
   }
   result.bars.push_back(bars);
+  Curves curves{"Discovery, idle", "modules", "bytes/s", {{"lean"}, {"vendors' defaults"}}};
+  for (double n = 2; n <= 16; ++n) {
+    curves.curves[0].points.emplace_back(n, 40 * n);
+    curves.curves[1].points.emplace_back(n, 60 * n * n);
+  }
+  result.curves.push_back(curves);
   result.notes = {"One way: the hosts share one clock, its error is 0.", "LCM is not installed: no figures."};
   result.partial = true;
   return result;

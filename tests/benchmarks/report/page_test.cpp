@@ -61,7 +61,7 @@ TEST(PageTest, RefersToNothingOutside) {
 
 TEST(PageTest, ShowsEachThingThatWasMeasured) {
   const std::string page = to_html(made_up_result());
-  EXPECT_EQ(count_of(page, "<svg"), 1u + 2 + 2);  // bars; a distribution and a time series for each size
+  EXPECT_EQ(count_of(page, "<svg"), 2u + 2 + 2);  // bars, curves; a distribution and a time series for each size
   EXPECT_EQ(count_of(page, "<table>"), 1u);
   EXPECT_NE(page.find("link.delay_ms</dt><dd>0<"), std::string::npos);
   EXPECT_NE(page.find("LCM is not installed"), std::string::npos);
@@ -92,6 +92,35 @@ TEST(DistributionChartTest, ALineEndsWhereItsCountResolvesNoMore) {
   // Two nines of four: in the middle of 70 to 880; 199 on an axis from 0 to 210, drawn from 350 up to 20.
   EXPECT_EQ(data.substr(data.rfind('L')), "L475.0,37.3");
   EXPECT_EQ(data.substr(0, 11), "M70.0,191.3");  // 101, the least
+}
+
+TEST(TimeChartTest, ALineBreaksWhereNothingWasMeasuredForLong) {
+  Samples steady{.name = "a", .unit = "µs"};
+  for (int i = 0; i <= 300; ++i) {
+    steady.at_s.push_back(i);
+    steady.values.push_back(5);
+  }
+  Samples turns = steady;
+  for (int i = 100; i < 200; ++i) turns.at_s[static_cast<std::size_t>(i)] = 250 + 0.1 * i;
+  const auto begins = [](const Samples& samples) { return count_of(time_chart({&samples}), "M"); };
+  EXPECT_EQ(begins(steady), 2u);  // band and median
+  EXPECT_EQ(begins(turns), 4u);
+  steady.at_s.clear();
+  EXPECT_EQ(time_chart({&steady}), "");
+}
+
+TEST(CurvesChartTest, PowersAreStraightLines) {
+  Curves curves{"", "N", "ns", {{"cubic"}}};
+  for (const double n : {1., 10., 100.}) curves.curves[0].points.emplace_back(n, n * n * n);
+  const std::string chart = curves_chart(curves);
+  const std::size_t begin = chart.find("<path d=\"M") + 10;
+  double x[3], y[3];
+  ASSERT_EQ(std::sscanf(chart.c_str() + begin, "%lf,%lfL%lf,%lfL%lf,%lf", &x[0], &y[0], &x[1], &y[1], &x[2], &y[2]),
+            6);
+  EXPECT_NEAR(x[1] - x[0], x[2] - x[1], 0.2);
+  EXPECT_NEAR(y[1] - y[0], y[2] - y[1], 0.2);
+  EXPECT_LT(y[2], y[0]);
+  EXPECT_EQ(curves_chart({"", "N", "ns", {{"nothing"}}}), "");
 }
 
 TEST(BarsChartTest, WhiskersStandAtTheirValues) {

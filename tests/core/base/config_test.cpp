@@ -186,14 +186,89 @@ TEST(ConfigTest, RefusesNumbersThatAreNotFinite) {
   }
 }
 
+TEST(ConfigTest, RefusesTriplesThatAreNotFinite) {
+  EXPECT_EQ(message_for("gains:\n  limit_N: [0, nan, 1]\n"),
+            "legion.yaml:2: gains.limit_N[1]: found 'nan', expected a number");
+  for (const char* number : {".nan", "inf", "-inf", "1e999", "[1]"}) {
+    EXPECT_NE(message_for(std::string("gains: {limit_N: [0, 0, ") + number + "]}"), "accepted") << number;
+  }
+  EXPECT_EQ(message_for("gains: {limit_N: [0, 0, 1e300]}"), "accepted");
+}
+
 TEST(ConfigTest, NamesAWrongShape) {
-  EXPECT_EQ(message_for("rate_Hz: [1, 2]\n"), "legion.yaml:1: rate_Hz: found '', expected a number from 1 to 1000");
+  EXPECT_EQ(message_for("rate_Hz: [1, 2]\n"),
+            "legion.yaml:1: rate_Hz: found a list, expected a number from 1 to 1000");
   EXPECT_EQ(message_for("gains: 3\n"), "legion.yaml:1: gains: found '3', expected keys and values below it");
   EXPECT_EQ(message_for("ports: 3\n"), "legion.yaml:1: ports: found '3', expected a list, as in [a, b]");
   EXPECT_EQ(message_for("gains: {limit_N: [1, 2]}\n"),
-            "legion.yaml:1: gains.limit_N: found '', expected three numbers, as in [0, 0, 1.5]");
+            "legion.yaml:1: gains.limit_N: found a list, expected three numbers, as in [0, 0, 1.5]");
   EXPECT_EQ(message_for("environment: 3\n"),
             "legion.yaml:1: environment: found '3', expected keys and values below it");
+}
+
+TEST(ConfigTest, RefusesScalarsAndListsWhereStructsAreDue) {
+  EXPECT_EQ(message_for("ports:\n  - {kind: male}\n  - female\n"),
+            "legion.yaml:3: ports[1]: found 'female', expected keys and values, as in {key: value}");
+  EXPECT_EQ(message_for("ports: [[male]]\n"),
+            "legion.yaml:1: ports[0]: found a list, expected keys and values, as in {key: value}");
+  EXPECT_EQ(message_for("ports: [~]\n"),
+            "legion.yaml:1: ports[0]: found no value, expected keys and values, as in {key: value}");
+  EXPECT_EQ(message_for("gains: [1, 2]\n"), "legion.yaml:1: gains: found a list, expected keys and values below it");
+}
+
+TEST(ConfigTest, RefusesListsAndMapsWhereTextsAndNumbersAreDue) {
+  EXPECT_EQ(message_for("name: [a]\n"), "legion.yaml:1: name: found a list, expected a text ('' for an empty one)");
+  EXPECT_EQ(message_for("law:\n  paper: 1\n"),
+            "legion.yaml:1: law: found keys and values, expected one of none, paper, local");
+  EXPECT_EQ(message_for("joint_rad: [0, {a: 1}]\n"),
+            "legion.yaml:1: joint_rad[1]: found keys and values, expected a number");
+  EXPECT_EQ(message_for("environment:\n  ECITON_DDS: fastdds\n  PATH: [a, b]\n"),
+            "legion.yaml:3: environment.PATH: found a list, expected a text ('' for an empty one)");
+}
+
+TEST(ConfigTest, RefusesAKeyGivenTwiceInOneMap) {
+  EXPECT_EQ(message_for("law: none\nname: a\nlaw: paper\n"),
+            "legion.yaml:3: key 'law' is given twice, first at legion.yaml:1; expected it once");
+  EXPECT_EQ(message_for("gains:\n  kp: 1\n  kp: 1\n"),
+            "legion.yaml:3: key 'gains.kp' is given twice, first at legion.yaml:2; expected it once");
+  EXPECT_EQ(message_for("ports:\n  - joint: 1\n    joint: 2\n"),
+            "legion.yaml:3: key 'ports[0].joint' is given twice, first at legion.yaml:2; expected it once");
+  EXPECT_EQ(message_for("gains: {kp: 1}\nlaw: none\ngains: {limit_N: [1, 1, 1]}\n"),
+            "legion.yaml:3: key 'gains' is given twice, first at legion.yaml:1; expected it once");
+  EXPECT_EQ(message_for_setting("gains={kp: 1, kp: 2}"),
+            "--set gains={kp: 1, kp: 2}: key 'gains.kp' is given twice; expected it once");
+  // The same key in different maps, and in different layers, is none of it.
+  EXPECT_EQ(message_for("ports:\n  - joint: 1\n  - joint: 1\n"), "accepted");
+}
+
+TEST(ConfigTest, RefusesWhatNoConfigMeans) {
+  EXPECT_EQ(message_for("? [a, b]\n: 1\n"),
+            "legion.yaml:1: a list or a map stands where a key should; expected 'key: value'");
+  EXPECT_EQ(message_for("law: none\n---\nlaw: paper\n"),
+            "legion.yaml: it holds 2 YAML documents, parted by '---'; expected one");
+  EXPECT_NE(message_for("ports: &again [*again]\n"), "accepted") << "and it comes to an end";
+}
+
+TEST(ConfigTest, TakesAnEmptyValueOnlyWhereItMeansSomething) {
+  EXPECT_EQ(message_for_setting("name="), "--set name=: name: found no value, expected a text ('' for an empty one)");
+  EXPECT_EQ(message_for_setting("name=''"), "accepted");
+  EXPECT_EQ(message_for("name:\n"), "legion.yaml:1: name: found no value, expected a text ('' for an empty one)");
+  EXPECT_EQ(message_for_setting("law="), "--set law=: law: found no value, expected one of none, paper, local");
+  EXPECT_EQ(message_for_setting("rate_Hz="),
+            "--set rate_Hz=: rate_Hz: found no value, expected a number from 1 to 1000");
+  // Of these words the empty one is one: "the default", say.
+  ConfigTree tree = tree_of("vendor: fastdds\n");
+  ASSERT_TRUE(tree.set("vendor=", "--set").ok());
+  struct Choice {
+    std::string vendor = "cyclonedds";
+    void visit_fields(ConfigReader& v) { v("vendor", vendor, one_of({"", "cyclonedds", "fastdds"})); }
+  } choice;
+  const Status status = read_config(tree, choice);
+  EXPECT_TRUE(status.ok()) << status.error().message;
+  EXPECT_EQ(choice.vendor, "");
+  const Status other = read_config(tree_of("vendor: rti\n"), choice);
+  ASSERT_FALSE(other.ok());
+  EXPECT_EQ(other.error().message, "legion.yaml:1: vendor: found 'rti', expected one of '', cyclonedds, fastdds");
 }
 
 TEST(ConfigTest, SaysWhereTheYamlBreaks) {
@@ -222,6 +297,15 @@ TEST(ConfigTest, NamesAFileThatIsNotThere) {
   const Status status = tree.add_file("/nonexistent/legion.yaml");
   ASSERT_FALSE(status.ok());
   EXPECT_NE(status.error().message.find("/nonexistent/legion.yaml"), std::string::npos);
+}
+
+TEST(ConfigTest, NamesADirectoryThatIsTakenForAFile) {
+  ConfigTree tree;
+  const std::string directory = std::filesystem::temp_directory_path();
+  const Status status = tree.add_file(directory);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().message,
+            "config file " + directory + " cannot be read: it is a directory; expected a YAML file");
 }
 
 TEST(ConfigTest, ReadsAFileAndRemembersItsName) {

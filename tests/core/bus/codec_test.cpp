@@ -122,7 +122,7 @@ TEST(CodecTest, TheLargestSampleFillsSizeMaxAndOneByteLessRefusesIt) {
   });
   msg::ChainView full;
   full.members.resize(16);
-  full.links.resize(15);
+  full.links.resize(full.links.bound());
   EXPECT_EQ(encoded(full).size(), TypeTraits<msg::ChainView>::size_max);
 }
 

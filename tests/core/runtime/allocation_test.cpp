@@ -128,15 +128,20 @@ TEST_F(ExecutorAllocationTest, SimulationTick) {
 }
 
 TEST_F(ExecutorAllocationTest, PuttingACheckpoint) {
-  struct State {
-    double values[20];
-  } state{};
+  struct Keeper final : Service {
+    std::string_view name() const override { return "keeper"; }
+    Schedule schedule() override { return every(std::chrono::milliseconds(10), Phase::coordinate); }
+    void step(TimePoint) noexcept override {}
+    std::uint32_t state_version() const noexcept override { return 1; }
+    void save_state(StateWriter& writer) const noexcept override { writer(values); }
+    std::array<double, 20> values{};
+  } keeper;
   const auto file = std::filesystem::temp_directory_path() / ("eciton-put-" + std::to_string(::getpid()));
   {
-    Checkpoint<State> checkpoint(file, 1);
+    Checkpoint checkpoint(keeper, file);
     checkpoint.start();
     AllocationGuard guard;
-    for (int k = 0; k < 1000; ++k) checkpoint.put(state);
+    for (int k = 0; k < 1000; ++k) checkpoint.save();
     EXPECT_EQ(guard.framework(), 0u) << guard.describe();
   }
   std::filesystem::remove(file);

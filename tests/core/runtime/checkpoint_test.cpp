@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/base/wall_clock.hpp"
+#include "core/robot/trajectory.hpp"
 
 namespace eciton::runtime {
 namespace {
@@ -24,6 +25,24 @@ State state_of(std::int64_t number) {
   return state;
 }
 
+/// Keeps a State, under a version.
+template <class Kept = State>
+class Keeper final : public Service {
+ public:
+  explicit Keeper(std::uint32_t version, const Kept& kept = {}) : state(kept), version_(version) {}
+  std::string_view name() const override { return "keeper"; }
+  Schedule schedule() override { return every(10ms, Phase::coordinate); }
+  void step(TimePoint) noexcept override {}
+  std::uint32_t state_version() const noexcept override { return version_; }
+  void save_state(StateWriter& writer) const noexcept override { writer(state); }
+  void load_state(StateReader& reader) noexcept override { reader(state); }
+
+  Kept state;
+
+ private:
+  std::uint32_t version_;
+};
+
 class CheckpointTest : public ::testing::Test {
  protected:
   CheckpointTest() {
@@ -34,9 +53,10 @@ class CheckpointTest : public ::testing::Test {
   ~CheckpointTest() override { std::filesystem::remove_all(directory_); }
 
   void put_and_end(std::int64_t number, std::uint32_t version = 3) {
-    Checkpoint<State> checkpoint(file_, version);
+    Keeper keeper(version, state_of(number));
+    Checkpoint checkpoint(keeper, file_);
     checkpoint.start();
-    checkpoint.put(state_of(number));
+    checkpoint.save();
   }
   std::string bytes() {
     std::ifstream in(file_, std::ios::binary);
@@ -44,7 +64,8 @@ class CheckpointTest : public ::testing::Test {
   }
   void write(const std::string& bytes) { std::ofstream(file_, std::ios::binary) << bytes; }
   std::string refusal(std::uint32_t version = 3) {
-    const auto loaded = Checkpoint<State>(file_, version).load();
+    Keeper keeper(version);
+    const auto loaded = Checkpoint(keeper, file_).load();
     return loaded ? "" : loaded.error().message;
   }
 
@@ -55,15 +76,17 @@ class CheckpointTest : public ::testing::Test {
 TEST_F(CheckpointTest, FindsTheLastStatePut) {
   put_and_end(41);
   put_and_end(42);
-  const auto loaded = Checkpoint<State>(file_, 3).load();
+  Keeper keeper(3);
+  const auto loaded = Checkpoint(keeper, file_).load();
   ASSERT_TRUE(loaded && *loaded);
-  EXPECT_EQ((*loaded)->stamp_ns, 42);
-  EXPECT_EQ((*loaded)->z_m, 1.5);
+  EXPECT_EQ(keeper.state.stamp_ns, 42);
+  EXPECT_EQ(keeper.state.z_m, 1.5);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory_), {}), 1) << "nothing is left beside it";
 }
 
 TEST_F(CheckpointTest, StartsAnewWithoutAFile) {
-  const auto loaded = Checkpoint<State>(file_, 3).load();
+  Keeper keeper(3);
+  const auto loaded = Checkpoint(keeper, file_).load();
   ASSERT_TRUE(loaded);
   EXPECT_FALSE(*loaded);
 }
@@ -90,7 +113,8 @@ TEST_F(CheckpointTest, NamesAnotherVersionAndAnotherSize) {
   put_and_end(42, 2);
   EXPECT_NE(refusal().find("version 2, this program writes 3"), std::string::npos) << refusal();
   EXPECT_NE(refusal().find("control-1"), std::string::npos);
-  const auto other = Checkpoint<int>(file_, 2).load();
+  Keeper<int> narrow(2);
+  const auto other = Checkpoint(narrow, file_).load();
   ASSERT_FALSE(other);
   EXPECT_NE(other.error().message.find("256 bytes, this program's 4"), std::string::npos) << other.error().message;
 }
@@ -103,11 +127,13 @@ TEST_F(CheckpointTest, ChecksumIsTheOneOfZlib) {
 }
 
 TEST_F(CheckpointTest, WritesSeldomHoweverOftenItIsPut) {
-  Checkpoint<State> checkpoint(file_, 3, 20ms);
+  Keeper keeper(3);
+  Checkpoint checkpoint(keeper, file_, 20ms);
   checkpoint.start();
   const Duration begin = monotonic_now();
   for (int k = 0; k < 200; ++k) {
-    checkpoint.put(state_of(k));
+    keeper.state = state_of(k);
+    checkpoint.save();
     std::this_thread::sleep_for(200us);
   }
   const std::uint64_t written = checkpoint.writer()->written();
@@ -117,20 +143,48 @@ TEST_F(CheckpointTest, WritesSeldomHoweverOftenItIsPut) {
 
 TEST_F(CheckpointTest, CountsWhatItCannotWriteAndGoesOn) {
   file_ = directory_ / "missing" / "control-1";
-  Checkpoint<State> checkpoint(file_, 3, 1ms);
+  Keeper keeper(3);
+  Checkpoint checkpoint(keeper, file_, 1ms);
   checkpoint.start();
   const Duration until = monotonic_now() + 10s;
   while (checkpoint.writer()->failed() < 2 && monotonic_now() < until) {
-    checkpoint.put(state_of(1));
+    checkpoint.save();
     std::this_thread::sleep_for(1ms);
   }
   EXPECT_GE(checkpoint.writer()->failed(), 2u);
   std::filesystem::create_directory(directory_ / "missing");
   while (checkpoint.writer()->written() == 0 && monotonic_now() < until) {
-    checkpoint.put(state_of(2));
+    checkpoint.save();
     std::this_thread::sleep_for(1ms);
   }
   EXPECT_EQ(refusal(), "");
+}
+
+TEST(ServiceStateTest, WritesMembersMatricesAndPlainValuesAndReadsThemBack) {
+  robot::PoseMotion motion({.p_WM = {1, 2, 3}, .v_WM = {0.1, 0, 0}}, {{2, 2, 3}, robot::exp_so3({0, 0, 1})}, 5,
+                           robot::SpeedProfile::quintic, {});
+  StateWriter counting({});
+  counting(motion, 7);
+  EXPECT_FALSE(counting.complete());
+  std::vector<std::byte> bytes(counting.size());
+  StateWriter writer(bytes);
+  writer(motion, 7);
+  EXPECT_TRUE(writer.complete());
+
+  robot::PoseMotion other;
+  int seven = 0;
+  StateReader reader(bytes);
+  reader(other);
+  EXPECT_FALSE(reader.complete()) << "an int is left";
+  reader(seven);
+  EXPECT_TRUE(reader.complete());
+  EXPECT_EQ(seven, 7);
+  for (const double t_s : {0.0, 5.5, 6.0, 100.0}) {
+    EXPECT_EQ(other.at(t_s).p_WM, motion.at(t_s).p_WM);
+    EXPECT_EQ(other.at(t_s).R_WM, motion.at(t_s).R_WM);
+  }
+  reader(seven);
+  EXPECT_FALSE(reader.complete()) << "there was no more";
 }
 
 TEST(LatestBytesTest, NeverGivesAMixtureOfTwoStates) {

@@ -196,7 +196,8 @@ TEST_F(NetCommandTest, TheDemoPutsEveryModuleIntoItsHostAndItsSwarmOnTheRadio) {
   };
   EXPECT_TRUE(eventually([&] { return count(1) == 2 && count(2) == 2; }));
   for (const auto& [from, to] : {std::pair("m1", "m2"), {"m2", "m1"}, {"operator", "m1"}, {"m2", "operator"}}) {
-    EXPECT_TRUE(eventually([&] { return counted(from, to, "delivered") > 20; })) << from << " to " << to;
+    EXPECT_TRUE(eventually([&, from = from, to = to] { return counted(from, to, "delivered") > 20; }))
+        << from << " to " << to;
   }
   EXPECT_EQ(counted("m1", "m2", "lost"), 0u);
   EXPECT_EQ(eciton_command({"net", "set", "--name", name, "loss=50%"}).status, 0);

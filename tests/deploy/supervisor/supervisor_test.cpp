@@ -59,7 +59,7 @@ TEST_F(SupervisorTest, WaitsTwiceAsLongBeforeEachRestartUpToTheBound) {
   EXPECT_EQ(waits, (std::vector<Duration>{250ms, 500ms, 1s, 2s, 4s, 5s, 5s}));
 }
 
-TEST_F(SupervisorTest, StartsTheBackOffAnewAfterASteadyRun) {
+TEST_F(SupervisorTest, RestartsAtOnceAfterASteadyRunAndStartsTheBackOffAnew) {
   Duration now = 100s;
   Supervisor supervisor(config_, [&] { return now; });
   ASSERT_TRUE(supervisor.start(shell("one", "exit 1")).ok());
@@ -73,6 +73,9 @@ TEST_F(SupervisorTest, StartsTheBackOffAnewAfterASteadyRun) {
   now = *supervisor.next_restart();
   supervisor.check();
   now += 11s;
+  ASSERT_TRUE(ended());
+  EXPECT_EQ(*supervisor.next_restart() - now, 0ms);
+  supervisor.check();
   ASSERT_TRUE(ended());
   EXPECT_EQ(*supervisor.next_restart() - now, 250ms);
 }

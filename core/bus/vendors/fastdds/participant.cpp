@@ -106,15 +106,17 @@ eciton_participant::~eciton_participant() {
   fast::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
-void eciton_participant::on_participant_discovery(fast::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& found) {
+void eciton_participant::on_participant_discovery(fast::DomainParticipant* self,
+                                                  rtps::ParticipantDiscoveryInfo&& found) {
   if (found.status == rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT &&
       found.info.m_VendorId == rtps::c_VendorId_eProsima) {
+    announced_ = self;
     reannouncer_.discovered();
   }
 }
 
 void eciton_participant::announce() {
-  if (participant != nullptr) eciton::bus::fastdds::announce(*participant);
+  if (const fast::DomainParticipant* self = announced_) eciton::bus::fastdds::announce(*self);
 }
 
 std::string eciton_participant::label() const {

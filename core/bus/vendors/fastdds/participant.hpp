@@ -1,6 +1,7 @@
 // A Fast DDS participant on one network interface, and the topics and types that its endpoints share.
 #pragma once
 
+#include <atomic>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -32,5 +33,7 @@ struct eciton_participant final : eprosima::fastdds::dds::DomainParticipantListe
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& found) override;
   void announce();
 
+  // The same as `participant`, known from the first discovery on: that may come before create_participant returns.
+  std::atomic<eprosima::fastdds::dds::DomainParticipant*> announced_{nullptr};
   eciton::bus::vendors::Reannouncer reannouncer_;
 };
