@@ -2,6 +2,7 @@
 #include "benchmarks/formation/formation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -26,6 +27,43 @@ struct FormationCase {
 };
 
 std::string loss_name(double loss) { return std::to_string(std::lround(loss * 100)); }
+
+/// What all trials of one case at one loss gave.
+class FormationSamples {
+ public:
+  FormationSamples(const FormationCase& which, double loss)
+      : name_(std::to_string(which.modules) + "." + loss_name(loss) + "." + which.pair.name()) {
+    constexpr std::array<const char*, 3> kinds{"view", "wrench", "skew"};
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      samples_[k].name = kinds[k] + ("." + name_);
+      samples_[k].unit = "ms";
+      samples_[k].chart = std::string(kinds[k]) + " at " + loss_name(loss) + " % loss";
+    }
+  }
+
+  const std::string& name() const { return name_; }
+  void add(double at_s, const std::optional<FormationTimes>& times) {
+    for (Samples& samples : samples_) {
+      ++samples.sent;
+      samples.lost += times ? 0 : 1;
+      if (times) samples.at_s.push_back(at_s);
+    }
+    if (!times) return;
+    samples_[0].values.push_back(times->view_s * 1e3);
+    samples_[1].values.push_back(times->wrench_s * 1e3);
+    samples_[2].values.push_back(times->skew_s * 1e3);
+  }
+  void mark_partial() {
+    for (Samples& samples : samples_) samples.partial = true;
+  }
+  void move_to(std::vector<Samples>& all) {
+    for (Samples& samples : samples_) all.push_back(std::move(samples));
+  }
+
+ private:
+  std::string name_;
+  std::array<Samples, 3> samples_;
+};
 
 std::vector<FormationCase> formation_cases(const FormationOptions& options) {
   std::vector<FormationCase> cases;
@@ -66,6 +104,10 @@ void check(const FormationOptions& options) {
       throw BadInput{{"a loss of " + loss_name(loss) + " % over loopback, which loses nothing: it takes hosts"}};
     }
   }
+  if (options.sessions < 1 || options.sessions > options.trials) {
+    throw BadInput{{std::to_string(options.sessions) + " sessions of " + std::to_string(options.trials) +
+                    " trials: expected 1 to as many"}};
+  }
   for (const VendorPair& pair : options.pairs) {
     for (const std::string& vendor : {pair.first, pair.second}) {
       if (const auto plugin = bus::load_plugin(vendor); !plugin) throw BadInput{plugin.error()};
@@ -89,8 +131,7 @@ class FormationRun {
     const auto formations = formation_cases(options_);
     const auto discoveries = discovery_cases(options_);
     all_ = formations.size() * options_.losses.size() + discoveries.size();
-    left_s_ = static_cast<double>(formations.size()) *
-                  (start_s + static_cast<double>(options_.losses.size() * options_.trials) * trial_s) +
+    left_s_ = static_cast<double>(formations.size()) * formation_s() +
               static_cast<double>(discoveries.size()) * discovery_s();
     bring_up_net(formations, discoveries);
     for (const FormationCase& which : formations) {
@@ -122,54 +163,45 @@ class FormationRun {
 
   void form(const FormationCase& which) {
     const std::string name = std::to_string(which.modules) + "." + which.pair.name();
-    const double began_left_s = left_s_;
+    std::vector<FormationSamples> samples;
+    for (const double loss : options_.losses) samples.emplace_back(which, loss);
+    const double left_after_s = left_s_ - formation_s();
     try {
-      if (net_) ok_or_throw(net_->set("", "", {"clear"}));
-      control_.tell(finished_, all_, left_s_, name + ": starting");
-      ChainTrials trials(options_, control_, net_ ? &*net_ : nullptr, which.modules, which.pair);
-      trials.prepare();
-      for (const double loss : options_.losses) form_at(trials, which, loss);
+      for (std::size_t session = 0; session < options_.sessions; ++session) {
+        if (net_) ok_or_throw(net_->set("", "", {"clear"}));
+        control_.tell(finished_, all_, left_s_, name + ": starting");
+        ChainTrials trials(options_, control_, net_ ? &*net_ : nullptr, which.modules, which.pair);
+        trials.prepare();
+        for (std::size_t k = 0; k < options_.losses.size(); ++k) {
+          form_at(trials, options_.losses[k], samples[k], trials_of(session));
+        }
+      }
     } catch (const FormationFailure& failure) {
       fail(name, failure.why);
+      for (FormationSamples& s : samples) s.mark_partial();
     }
-    left_s_ = began_left_s - start_s - static_cast<double>(options_.losses.size() * options_.trials) * trial_s;
+    for (FormationSamples& s : samples) s.move_to(formations_);
+    left_s_ = left_after_s;
+    finished_ += options_.losses.size();
   }
 
-  void form_at(ChainTrials& trials, const FormationCase& which, double loss) {
+  double formation_s() const {
+    return static_cast<double>(options_.sessions) * start_s +
+           static_cast<double>(options_.losses.size() * options_.trials) * trial_s;
+  }
+
+  std::size_t trials_of(std::size_t session) const {
+    return (session + 1) * options_.trials / options_.sessions - session * options_.trials / options_.sessions;
+  }
+
+  void form_at(ChainTrials& trials, double loss, FormationSamples& samples, std::size_t count) {
     if (net_) ok_or_throw(net_->set("", "", {"loss=" + loss_name(loss) + "%"}));
-    const std::string suffix = "." + std::to_string(which.modules) + "." + loss_name(loss) + "." + which.pair.name();
-    Samples view, wrench, skew;
-    for (auto [samples, what] : {std::pair{&view, "view"}, {&wrench, "wrench"}, {&skew, "skew"}}) {
-      samples->name = what + suffix;
-      samples->unit = "ms";
-      samples->chart = std::string(what) + " at " + loss_name(loss) + " % loss";
+    for (std::size_t k = 0; k < count; ++k) {
+      control_.tell(finished_, all_, left_s_, samples.name() + ", " + std::to_string(k + 1));
+      const double at_s = to_s(monotonic_now() - begin_);
+      samples.add(at_s, trials.trial());
+      left_s_ -= trial_s;
     }
-    const auto keep = [&](bool partial) {
-      view.partial = wrench.partial = skew.partial = partial;
-      for (Samples* samples : {&view, &wrench, &skew}) formations_.push_back(std::move(*samples));
-    };
-    try {
-      for (std::size_t k = 0; k < options_.trials; ++k) {
-        control_.tell(finished_, all_, left_s_, suffix.substr(1) + ", " + std::to_string(k + 1));
-        const double at_s = to_s(monotonic_now() - begin_);
-        const auto times = trials.trial();
-        for (Samples* samples : {&view, &wrench, &skew}) {
-          ++samples->sent;
-          samples->lost += times ? 0 : 1;
-          if (times) samples->at_s.push_back(at_s);
-        }
-        left_s_ -= trial_s;
-        if (!times) continue;
-        view.values.push_back(times->view_s * 1e3);
-        wrench.values.push_back(times->wrench_s * 1e3);
-        skew.values.push_back(times->skew_s * 1e3);
-      }
-    } catch (const FormationFailure&) {
-      keep(true);
-      throw;
-    }
-    keep(false);
-    ++finished_;
   }
 
   void discover(const DiscoveryCase& which) {
@@ -270,6 +302,7 @@ Json config_of(const FormationOptions& o) {
           {"pairs", pairs},
           {"pairs_at", o.pairs_at},
           {"trials", o.trials},
+          {"sessions", o.sessions},
           {"hosts", o.hosts},
           {"realtime_priority", o.realtime_priority},
           {"discovery_modules", o.discover ? o.discovery_modules : std::vector<std::uint32_t>{}},

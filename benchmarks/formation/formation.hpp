@@ -25,7 +25,8 @@ struct FormationOptions {
   std::vector<VendorPair> pairs{
       {"cyclonedds", "cyclonedds"}, {"fastdds", "fastdds"}, {"cyclonedds", "fastdds"}, {"fastdds", "cyclonedds"}};
   std::uint32_t pairs_at = 3;
-  std::size_t trials = 60;
+  std::size_t trials = 60;   // of each
+  std::size_t sessions = 3;  // in which they are made: members start anew, at other phases of their periods
   bool form = true;
   int realtime_priority = 0;  // SCHED_FIFO of the members' services; 0: as the system schedules them
 

@@ -20,7 +20,7 @@ class FormationTest : public testing::Test {
     options_.losses = {0};
     options_.modules = {2};
     options_.pairs = {{"cyclonedds", "fastdds"}};
-    options_.trials = 2;
+    options_.trials = options_.sessions = 2;
   }
   void TearDown() override { std::filesystem::remove_all(directory_); }
 
