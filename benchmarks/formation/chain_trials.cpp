@@ -18,8 +18,7 @@ constexpr std::uint32_t male = 0, female = 1;                  // LEGION's ports
 
 ChainTrials::ChainTrials(const FormationOptions& options, const RunControl& control, const net::OwnedNet* net,
                          std::uint32_t modules, const VendorPair& pair)
-    : options_(options),
-      control_(control),
+    : control_(control),
       fleet_(options, net),
       pair_(pair),
       listener_(value_or_throw(MemberListener::open(fleet_.directory() / "members.sock"))),

@@ -52,7 +52,6 @@ class ChainTrials {
   bool agreed(std::size_t from, std::size_t to) const;
   bool shared(std::size_t from, std::size_t to) const;
 
-  const FormationOptions& options_;
   const RunControl& control_;
   Fleet fleet_;
   VendorPair pair_;

@@ -17,7 +17,7 @@ constexpr std::uint8_t acknack = 0x06, heartbeat = 0x07, gap = 0x08, info_destin
 constexpr std::uint8_t builtin_bits = 0xc0;
 // 9.3.1.5: entities that every participant has
 constexpr std::uint32_t participant_writer = 0x000100c2, publications_writer = 0x000003c2,
-                        subscriptions_writer = 0x000004c2, liveliness_writer = 0x000200c2;
+                        liveliness_writer = 0x000200c2;
 // 9.6.2.2.2: parameters
 constexpr std::uint16_t sentinel = 0x0001, topic_name = 0x0005, endpoint_guid = 0x005a;
 
