@@ -50,18 +50,21 @@ void ActService::take_commands(TimePoint now) noexcept {
 }
 
 void ActService::set_armed(bool armed, TimePoint now) noexcept {
-  if (armed == devices_.armed) return;
+  if (!armed) rotors_refuse_ = false;
+  if (armed == devices_.armed || rotors_refuse_) return;
+  // Bounded and real-time safe on the backends of this tree: they switch a flag that the next frame carries.
+  if (!armed) {
+    devices_.rotors->deactivate();
+  } else if (!devices_.rotors->activate()) {
+    rotors_refuse_ = true;  // said once; asked again when it was disarmed in between
+    report(now, msg::Severity::error, "the rotors' bus refuses to activate");
+    return;
+  }
   devices_.armed = armed;
   msg::Event out{.module_id = config_.module_id, .stamp_ns = to_ns(now), .service = "hardware", .machine = "rotors"};
   out.from = armed ? "inactive" : "active";
   out.to = armed ? "active" : "inactive";
   event_.write(out);
-  // Bounded and real-time safe on the backends of this tree: they switch a flag that the next frame carries.
-  if (armed) {
-    if (!devices_.rotors->activate()) report(now, msg::Severity::error, "the rotors' bus refuses to activate");
-  } else {
-    devices_.rotors->deactivate();
-  }
 }
 
 void ActService::write_rotors(TimePoint) noexcept {

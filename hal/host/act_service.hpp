@@ -46,6 +46,7 @@ class ActService final : public runtime::Service {
   robot::AttitudeFilter attitude_;
   robot::SafeDescent descent_;
 
+  bool rotors_refuse_ = false;  // to be armed
   msg::RotorCommand last_;
   TimePoint last_command_{};
   TimePoint last_step_{};

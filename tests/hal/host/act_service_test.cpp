@@ -174,11 +174,20 @@ TEST(ActServiceTest, ObeysAgainAtOnceWhenCommandsComeBack) {
   EXPECT_EQ(bench.thrusts_N(), uneven) << "and holds anew";
 }
 
-TEST(ActServiceTest, SaysThatTheRotorsRefuseToActivate) {
+TEST(ActServiceTest, SaysOnceThatTheRotorsRefuseToActivateAndStaysDisarmed) {
   HostBench bench;
   bench.devices.rotors = std::make_unique<DeadRotorBus>();
   bench.send(HostBench::command(uneven));
+  bench.send(HostBench::command(uneven));
   EXPECT_EQ(count(bench.faults, "refuses to activate"), 1u);
+  EXPECT_FALSE(bench.devices.armed);
+  bench.tick_for(100ms);
+  EXPECT_EQ(count(bench.faults, "safe output"), 0u) << "there is nothing to fly";
+  msg::RotorCommand disarmed = HostBench::command(uneven);
+  disarmed.armed = false;
+  bench.send(disarmed);
+  bench.send(HostBench::command(uneven));
+  EXPECT_EQ(count(bench.faults, "refuses to activate"), 2u) << "asked again";
 }
 
 TEST(ActServiceTest, MapsCommandsToJointsAndLatches) {
