@@ -78,7 +78,7 @@ void DemoFlight::wait_for_modules() {
   };
   // Until the first state is heard there is no modules' clock to go by.
   const Duration wall_begin = monotonic_now();
-  while (operator_.fleet().modules().empty()) {
+  while (!operator_.fleet().time_known()) {
     pump();
     if (monotonic_now() - wall_begin > from_s(3 * start_timeout_s))
       fail("no module is heard", {fleet_.plans[0].name + "/world"});

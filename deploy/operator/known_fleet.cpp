@@ -38,7 +38,8 @@ void KnownFleet::poll(TimePoint now) {
   beacon_.trigger().fetch();
   const TimePoint newest = std::max(state_.trigger().newest_stamp(), beacon_.trigger().newest_stamp());
   const Duration ahead = newest - now;
-  simulated_time_ = newest > never_heard && std::chrono::abs(ahead) > clocks_differ;
+  time_known_ = newest > never_heard;
+  simulated_time_ = time_known_ && std::chrono::abs(ahead) > clocks_differ;
   module_now_ = simulated_time_ ? newest : now;
   swarm_.set_now(module_now_);
   take(state_, &KnownModule::state);

@@ -42,6 +42,8 @@ class KnownFleet {
   /// caller's clock by more than a second; else it is the caller's clock.
   TimePoint module_now() const { return module_now_; }
   bool simulated_time() const { return simulated_time_; }
+  /// Before a state or a beacon was heard the modules' time is only supposed to be the caller's.
+  bool time_known() const { return time_known_; }
 
  private:
   KnownModule& note(std::uint32_t id);
@@ -51,6 +53,7 @@ class KnownFleet {
   bus::Participant& swarm_;
   TimePoint now_{};
   TimePoint module_now_{};
+  bool time_known_ = false;
   bool simulated_time_ = false;
   std::map<std::uint32_t, KnownModule> modules_;
   bus::Reader<msg::ModuleState> state_;

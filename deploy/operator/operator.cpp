@@ -189,6 +189,10 @@ bool Operator::ready(Goal& goal) {
     goal.report.reason = "it is not heard on the swarm ring; heard: " + fleet_.heard();
     return false;
   }
+  if (!fleet_.time_known()) {
+    goal.report.reason = "its view is heard, but no state or beacon that says what time it is there";
+    return false;
+  }
   if (!module->view && now_ - module->first_heard < config_.view_patience) return false;
   if (!fits_the_chain(goal, *module)) return false;
   // A chain's members must all hear it, since they start together; and a match on our side comes before the

@@ -222,6 +222,22 @@ TEST_F(OperatorTest, StampsInTheModulesTimeWhenThatIsSimulated) {
   EXPECT_NEAR(1e-9 * static_cast<double>(m1.docks[0].stamp_ns), 5.0, 0.2);
 }
 
+TEST_F(OperatorTest, WaitsForTheModulesTimeBeforeItStampsAGoal) {
+  FakeModule& m1 = add_module(1);
+  m1.announce({1}, 0);  // kept for late listeners, so it may be the first thing heard
+  op_->dock(1, 2);
+  for (int k = 0; k < 100; ++k) {
+    Network::of(domain).advance(now_);
+    op_->poll(now_);
+    now_ += 10ms;
+  }
+  EXPECT_NE(op_->fleet().find(1), nullptr);
+  EXPECT_FALSE(op_->fleet().time_known());
+  run(0.3);
+  EXPECT_TRUE(op_->fleet().time_known());
+  EXPECT_EQ(m1.docks.size(), 1u);
+}
+
 TEST_F(OperatorTest, StampsInItsOwnTimeWhenTheClocksAgreeRoughly) {
   module_ahead_ = 400ms;
   FakeModule& m1 = add_module(1);
