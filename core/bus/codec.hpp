@@ -1,4 +1,4 @@
-// A message to and from XCDR1 bytes, and its key hash. Fast CDR does the encoding (codec.cpp); the fields
+// A message to and from XCDR1 bytes. Fast CDR does the encoding (codec.cpp); the fields
 // come from the generated visitor. Nothing here allocates on a well-formed sample.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/base/bounded.hpp"
+#include "core/bus/key_hash.hpp"
 #include "core/bus/type_traits.hpp"
 
 namespace eciton::bus {
@@ -146,8 +147,6 @@ class Decoder {
   alignas(8) unsigned char storage_[256];
 };
 
-using KeyHash = std::array<std::uint8_t, 16>;
-
 /// Serializes into `buffer` (at least size_max bytes); returns the size, 0 if it did not fit.
 template <Message T>
 std::size_t encode(const T& sample, std::span<std::uint8_t> buffer) {
@@ -163,33 +162,6 @@ template <Message T>
   Decoder decoder(cdr);
   TypeTraits<T>::visit(decoder, sample);
   return decoder.finish();
-}
-
-/// Big-endian CDR of the key, zero-padded, as the RTPS specification has it for keys up to 16 bytes.
-template <Message T>
-KeyHash key_hash(const T& sample) {
-  KeyHash hash{};
-  if constexpr (TypeTraits<T>::keyed) {
-    std::array<std::uint8_t, encapsulation_size + 16> bytes{};
-    Encoder encoder(bytes, true);
-    TypeTraits<T>::visit_key(encoder, sample);
-    encoder.finish();
-    std::memcpy(hash.data(), bytes.data() + encapsulation_size, hash.size());
-  }
-  return hash;
-}
-
-/// The key hash from bytes. Keys are the leading members of every type (the generator refuses others), so a
-/// sample and a serialized key begin alike. The shape eciton_type wants.
-template <Message T>
-int key_hash_of_bytes(const std::uint8_t* cdr, std::uint32_t size, int /*key_only*/, std::uint8_t hash[16]) {
-  T sample;
-  Decoder decoder({cdr, size});
-  TypeTraits<T>::visit_key(decoder, sample);
-  if (!decoder.good()) return 0;
-  const KeyHash value = key_hash(sample);
-  std::memcpy(hash, value.data(), value.size());
-  return 1;
 }
 
 }  // namespace eciton::bus
