@@ -25,7 +25,6 @@ class Sleeper {
  private:
   bus::Waker& waker_;
   const StopFlag& stop_;
-  int timer_fd_;
 };
 
 }  // namespace eciton::runtime

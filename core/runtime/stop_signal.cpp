@@ -35,6 +35,24 @@ void StopFlag::request() noexcept {
   requested_.store(true, std::memory_order_release);
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = ::write(fd_, &one, sizeof one);
+  for (const auto& each : wakers_) {
+    if (bus::Waker* waker = each.load()) waker->signal();
+  }
+}
+
+void StopFlag::also_wake(bus::Waker& waker) const {
+  for (auto& each : wakers_) {
+    bus::Waker* none = nullptr;
+    if (each.compare_exchange_strong(none, &waker)) return;
+  }
+  ECITON_EXPECT(false, "at most eight sleepers to one stop flag");
+}
+
+void StopFlag::no_longer_wake(bus::Waker& waker) const noexcept {
+  for (auto& each : wakers_) {
+    bus::Waker* this_one = &waker;
+    if (each.compare_exchange_strong(this_one, nullptr)) return;
+  }
 }
 
 StopOnSignals::StopOnSignals(StopFlag& flag) {

@@ -6,6 +6,8 @@
 #include <array>
 #include <atomic>
 
+#include "core/bus/waker.hpp"
+
 namespace eciton::runtime {
 
 class StopFlag {
@@ -21,9 +23,14 @@ class StopFlag {
   /// Readable from the request on: for polls beside a waker's.
   int file_descriptor() const { return fd_; }
 
+  /// The request signals this waker too, until it is taken back; at most eight at a time.
+  void also_wake(bus::Waker& waker) const;
+  void no_longer_wake(bus::Waker& waker) const noexcept;
+
  private:
   std::atomic<bool> requested_{false};
   int fd_;
+  mutable std::array<std::atomic<bus::Waker*>, 8> wakers_{};
 };
 
 /// While it lives, SIGINT and SIGTERM set the flag; a second one of a kind ends the process as it would without
