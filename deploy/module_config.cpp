@@ -26,6 +26,14 @@ Status check_vendors(const ModuleConfig& config) {
   return ok();
 }
 
+/// Where every step waits for a tick of the world, 10 ms are often enough; on the wall clock a chain's agreement
+/// passes through six such waits (measured: latch to first shared wrench 175 ms at 10 ms, 70 ms at these).
+void set_wall_pace(ModuleConfig& config) {
+  config.radio.period_s = 0.002;
+  config.docking.rate_Hz = 500;
+  config.docking.start_margin_s = 0.05;
+}
+
 }  // namespace
 
 std::vector<std::string> ModuleConfig::service_processes() const {
@@ -73,6 +81,11 @@ Result<ModuleConfig> load_module_config(const std::vector<std::string>& files,
   }
   ModuleConfig config;
   if (const Status status = read_config(tree, config); !status) return status.error();
+  if (config.clock == "wall") {
+    config = {};
+    set_wall_pace(config);
+    if (const Status status = read_config(tree, config); !status) return status.error();
+  }
   if (config.id == 0) return Error{joined(files) + ": id is missing; expected a whole number from 1 to 90"};
   if (config.name.empty()) config.name = "m" + std::to_string(config.id);
   if (config.module_ring.domain == 0) config.module_ring.domain = module_ring_domain(config.id);

@@ -52,6 +52,8 @@ inline constexpr Topic<msg::ChainView> chain_view{"chain_view", QosClass::state,
 
 // The fleet
 inline constexpr Topic<msg::Beacon> beacon{"beacon", QosClass::sensor, Scope::swarm, 6s};
+inline constexpr Topic<msg::ModuleInfo> module_info{"module_info", QosClass::state, Scope::swarm};
+inline constexpr Topic<msg::RadioState> radio_state{"radio_state", QosClass::sensor, Scope::module, 6s};
 inline constexpr Topic<msg::Heartbeat> heartbeat{"heartbeat", QosClass::sensor, Scope::module, 50ms};
 inline constexpr Topic<msg::Event> event{"event", QosClass::event, Scope::swarm};
 inline constexpr Topic<msg::Fault> fault{"fault", QosClass::event, Scope::swarm};
@@ -61,11 +63,11 @@ inline constexpr Topic<msg::TruthPose> truth_pose{"truth_pose", QosClass::sensor
 inline constexpr Topic<msg::TruthContact> truth_contact{"truth_contact", QosClass::sensor, Scope::module};
 
 inline constexpr auto all =
-    std::tuple{clock,          clock_ack,     imu,          pose_measurement, module_state, external_wrench,
-               contact_wrench, rotor_command, rotor_state,  joint_command,    joint_state,  latch_command,
-               latch_state,    flight_goal,   morph_goal,   dock_goal,        mode_request, goal_status,
-               docking_state,  link_claim,    chain_view,   beacon,           heartbeat,    event,
-               fault,          truth_pose,    truth_contact};
+    std::tuple{clock,          clock_ack,     imu,         pose_measurement, module_state, external_wrench,
+               contact_wrench, rotor_command, rotor_state, joint_command,    joint_state,  latch_command,
+               latch_state,    flight_goal,   morph_goal,  dock_goal,        mode_request, goal_status,
+               docking_state,  link_claim,    chain_view,  beacon,           module_info,  radio_state,
+               heartbeat,      event,         fault,       truth_pose,       truth_contact};
 
 /// Calls `visit(topic)` for each topic.
 template <class Visit>

@@ -2,14 +2,12 @@
 #include "benchmarks/formation/formation.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <span>
 
 #include "benchmarks/formation/chain_trials.hpp"
-#include "benchmarks/formation/discovery.hpp"
-#include "benchmarks/statistics/summary.hpp"
+#include "benchmarks/formation/formation_report.hpp"
 #include "core/base/wall_clock.hpp"
 #include "core/bus/plugin_loader.hpp"
 #include "deploy/supervisor/launch.hpp"
@@ -19,51 +17,6 @@ namespace {
 
 constexpr double trial_s = 1.5;  // about; with the end of the link
 constexpr double start_s = 8;    // of members
-
-/// Members of one number and pair; the losses are set while they run.
-struct FormationCase {
-  std::uint32_t modules;
-  VendorPair pair;
-};
-
-std::string loss_name(double loss) { return std::to_string(std::lround(loss * 100)); }
-
-/// What all trials of one case at one loss gave.
-class FormationSamples {
- public:
-  FormationSamples(const FormationCase& which, double loss)
-      : name_(std::to_string(which.modules) + "." + loss_name(loss) + "." + which.pair.name()) {
-    constexpr std::array<const char*, 3> kinds{"view", "wrench", "skew"};
-    for (std::size_t k = 0; k < kinds.size(); ++k) {
-      samples_[k].name = kinds[k] + ("." + name_);
-      samples_[k].unit = "ms";
-      samples_[k].chart = std::string(kinds[k]) + " at " + loss_name(loss) + " % loss";
-    }
-  }
-
-  const std::string& name() const { return name_; }
-  void add(double at_s, const std::optional<FormationTimes>& times) {
-    for (Samples& samples : samples_) {
-      ++samples.sent;
-      samples.lost += times ? 0 : 1;
-      if (times) samples.at_s.push_back(at_s);
-    }
-    if (!times) return;
-    samples_[0].values.push_back(times->view_s * 1e3);
-    samples_[1].values.push_back(times->wrench_s * 1e3);
-    samples_[2].values.push_back(times->skew_s * 1e3);
-  }
-  void mark_partial() {
-    for (Samples& samples : samples_) samples.partial = true;
-  }
-  void move_to(std::vector<Samples>& all) {
-    for (Samples& samples : samples_) all.push_back(std::move(samples));
-  }
-
- private:
-  std::string name_;
-  std::array<Samples, 3> samples_;
-};
 
 std::vector<FormationCase> formation_cases(const FormationOptions& options) {
   std::vector<FormationCase> cases;
@@ -104,16 +57,14 @@ void check(const FormationOptions& options) {
       throw BadInput{{"a loss of " + loss_name(loss) + " % over loopback, which loses nothing: it takes hosts"}};
     }
   }
-  if (options.sessions < 1 || options.sessions > options.trials) {
-    throw BadInput{{std::to_string(options.sessions) + " sessions of " + std::to_string(options.trials) +
-                    " trials: expected 1 to as many"}};
+  std::vector<std::string> vendors = options.discovery_vendors;
+  for (const VendorPair& pair : options.pairs) vendors.insert(vendors.end(), {pair.first, pair.second});
+  for (const std::string& vendor : vendors) {
+    if (const auto plugin = bus::load_plugin(vendor); !plugin) throw BadInput{plugin.error()};
   }
-  for (const VendorPair& pair : options.pairs) {
-    for (const std::string& vendor : {pair.first, pair.second}) {
-      if (const auto plugin = bus::load_plugin(vendor); !plugin) throw BadInput{plugin.error()};
-    }
-  }
-  for (const char* program : {"eciton-bench-member", "eciton-bench-participant", "eciton-service", "eciton"}) {
+  std::vector<const char*> programs{"eciton-bench-member"};
+  if (options.hosts) programs.insert(programs.end(), {"eciton-bench-participant", "eciton-service", "eciton"});
+  for (const char* program : programs) {
     if (!std::filesystem::exists(options.programs / program)) {
       throw BadInput{
           {"program " + (options.programs / program).string() + " is not there; build it, or give its directory"}};
@@ -156,9 +107,10 @@ class FormationRun {
         net::OwnedNet::start({.name = options_.net, .modules = hosts, .seed = options_.seed}, options_.programs)));
   }
 
-  void fail(const std::string& what, const std::string& why) {
+  void fail(const std::string& what, const std::string& why, std::span<FormationSamples> samples = {}) {
     result_.notes.push_back(what + ": " + why);
     result_.partial = true;
+    for (FormationSamples& s : samples) s.mark_partial();
   }
 
   void form(const FormationCase& which) {
@@ -177,8 +129,9 @@ class FormationRun {
         }
       }
     } catch (const FormationFailure& failure) {
-      fail(name, failure.why);
-      for (FormationSamples& s : samples) s.mark_partial();
+      fail(name, failure.why, samples);
+    } catch (const BadInput& bad) {  // the net is gone, say; what was measured before is not lost
+      fail(name, bad.error.message, samples);
     }
     for (FormationSamples& s : samples) s.move_to(formations_);
     left_s_ = left_after_s;
@@ -210,77 +163,19 @@ class FormationRun {
       discoveries_.emplace_back(which, measure_discovery(options_, which, *net_, control_));
     } catch (const FormationFailure& failure) {
       fail("discovery, " + which.name(), failure.why);
+    } catch (const BadInput& bad) {
+      fail("discovery, " + which.name(), bad.error.message);
     }
     left_s_ -= discovery_s();
     ++finished_;
   }
 
   void finish() {
-    if (!formations_.empty()) {
-      result_.tables.push_back(
-          summary_table("From the latch to the chain that all members fly by, N.loss%.vendors", formations_));
-      Bars bars{.title = "From the latch to the first shared wrench of all members, p99",
-                .unit = "ms",
-                .bars = {},
-                .limit = {}};
-      for (const Samples& samples : formations_) add_formation(samples, bars);
-      result_.bars.push_back(std::move(bars));
-      result_.samples = std::move(formations_);
-    }
-    if (!discoveries_.empty()) add_discoveries();
-    if (!options_.hosts)
+    add_formations(result_, std::move(formations_));
+    add_discoveries(result_, discoveries_);
+    if (!options_.hosts) {
       result_.notes.emplace_back("over loopback: without hosts there is no loss, and no count of discovery");
-  }
-
-  void add_formation(const Samples& samples, Bars& bars) {
-    if (samples.values.empty()) return;
-    const Summary s = summarize(samples);
-    const std::size_t dot = samples.name.find('.');
-    const std::string what = samples.name.substr(0, dot), suffix = samples.name.substr(dot);
-    result_.metrics[what + "_ms_p50" + suffix] = s.p50;
-    result_.metrics[what + "_ms_p99" + suffix] = s.p99;
-    result_.metrics[what + "_ms_max" + suffix] = s.max;
-    result_.metrics[what + "_missing" + suffix] = samples.lost;
-    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-    if (what == "wrench") bars.bars.push_back({"", suffix.substr(1), {nothing, s.p99, nothing}});
-  }
-
-  void add_discoveries() {
-    Table idle{.title = "Discovery when all have met, per module (kbit/s)",
-               .columns = {"", "discovery", "participants", "endpoints", "liveliness", "unreachable", "beacons",
-                           "other topics", "other", "multicast packets"},
-               .rows = {}};
-    Table joining{.title = "When one more joins, all modules together (kB)",
-                  .columns = {"", "discovery", "participants", "endpoints", "liveliness", "topics", "all", "packets"},
-                  .rows = {}};
-    for (const auto& [which, figures] : discoveries_) {
-      const DiscoveryCount& c = figures.idle;
-      const auto kbit_s = [&, modules = which.modules](std::uint64_t bytes) {
-        return static_cast<double>(bytes) * 8e-3 / c.seconds / modules;
-      };
-      idle.rows.push_back({which.name(), number_text(kbit_s(c.discovery.bytes)),
-                           number_text(kbit_s(c.participants.bytes)), number_text(kbit_s(c.endpoints.bytes)),
-                           number_text(kbit_s(c.liveliness.bytes)), number_text(kbit_s(c.unreachable.bytes)),
-                           number_text(kbit_s(c.beacons.bytes)),
-                           number_text(kbit_s(c.topics.bytes - c.beacons.bytes)), number_text(kbit_s(c.other.bytes)),
-                           std::to_string(c.multicast.packets)});
-      const DiscoveryCount& j = figures.joining;
-      const auto kB = [](std::uint64_t bytes) { return number_text(static_cast<double>(bytes) * 1e-3); };
-      joining.rows.push_back({which.name(), kB(j.discovery.bytes), kB(j.participants.bytes), kB(j.endpoints.bytes),
-                              kB(j.liveliness.bytes), kB(j.topics.bytes), kB(j.total.bytes),
-                              std::to_string(j.total.packets)});
-      result_.metrics["discovery_idle_bit_s." + which.name()] = kbit_s(c.discovery.bytes) * 1e3;
-      result_.metrics["beacons_idle_bit_s." + which.name()] = kbit_s(c.beacons.bytes) * 1e3;
-      result_.metrics["multicast_idle_packets." + which.name()] = c.multicast.packets;
-      result_.metrics["discovery_joining_bytes." + which.name()] = j.discovery.bytes;
-      result_.metrics["all_joining_bytes." + which.name()] = j.total.bytes;
-      if (figures.missed > 0) {
-        fail("discovery, " + which.name(),
-             std::to_string(figures.missed) + " frames came faster than they were counted");
-      }
     }
-    result_.tables.push_back(std::move(idle));
-    result_.tables.push_back(std::move(joining));
   }
 
   const FormationOptions& options_;
@@ -289,7 +184,7 @@ class FormationRun {
   Duration begin_;
   std::optional<net::OwnedNet> net_;
   std::vector<Samples> formations_;
-  std::vector<std::pair<DiscoveryCase, DiscoveryFigures>> discoveries_;
+  Discoveries discoveries_;
   std::size_t finished_ = 0, all_ = 0;
   double left_s_ = 0;
 };
@@ -320,6 +215,7 @@ Result run_formation(const FormationOptions& given, const runtime::StopFlag& sto
   const RunControl control{stop, progress};
   FormationOptions options = given;
   if (options.programs.empty()) options.programs = deploy::program_directory();
+  options.sessions = std::clamp<std::size_t>(options.sessions, 1, std::max<std::size_t>(options.trials, 1));
   check(options);
   if (options.hosts) ok_or_throw(net::check_rights());
   Result result;

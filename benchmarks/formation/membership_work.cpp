@@ -8,7 +8,11 @@ namespace eciton::bench {
 MembershipWork::MembershipWork(bus::Participant& ring, const docking::DockingServiceConfig& config,
                                std::uint32_t ports)
     : config_(config),
-      membership_(ring, {.module_id = config.module_id, .incarnation = config.incarnation, .ports = ports}),
+      ring_(ring),
+      membership_(ring, {.module_id = config.module_id,
+                         .incarnation = config.incarnation,
+                         .ports = ports,
+                         .start_margin_s = config.start_margin_s}),
       module_states_(ring.create_reader(topics::module_state)),
       external_wrenches_(ring.create_reader(topics::external_wrench)),
       docking_states_(ring.create_reader(topics::docking_state)),
@@ -59,14 +63,7 @@ void MembershipWork::take(TimePoint now) noexcept {
   while (const auto s = module_states_.take()) hear(s->value.module_id, now - s->age);
   while (const auto s = external_wrenches_.take()) hear(s->value.module_id, now - s->age);
   while (const auto s = docking_states_.take()) hear(s->value.module_id, now - s->age);
-  while (const auto s = beacons_.take()) {
-    hear(s->value.module_id, now);
-    if (s->value.module_id != config_.module_id) continue;
-    for (const msg::PeerEcho& echo : s->value.peers) {
-      Peer* peer = find(echo.module_id);
-      if (peer != nullptr && echo.offset_bound_ns >= 0) peer->clock_offset = Duration(echo.offset_ns);
-    }
-  }
+  while (const auto s = beacons_.take()) hear(s->value.module_id, now);
 }
 
 bool MembershipWork::near() const {
@@ -79,7 +76,7 @@ void MembershipWork::update_membership(TimePoint now) noexcept {
   for (const Peer& peer : peers_) {
     if (peer.id == 0) continue;
     const bool fresh = peer.heard != TimePoint{} && chain::is_fresh(now - peer.heard, near(), freshness);
-    peers.push_back({.module = peer.id, .fresh = fresh, .clock_offset = peer.clock_offset});
+    peers.push_back({.module = peer.id, .fresh = fresh, .clock_offset = ring_.clock_offset(peer.id)});
   }
   membership_.update(now, {peers.data(), peers.size()});
 }

@@ -29,7 +29,6 @@ class MembershipWork final : public runtime::Service {
   struct Peer {
     std::uint32_t id = 0;
     TimePoint heard{};
-    std::optional<Duration> clock_offset;
   };
 
   void take(TimePoint now) noexcept;
@@ -41,6 +40,7 @@ class MembershipWork final : public runtime::Service {
   void write_state(TimePoint now) noexcept;
 
   docking::DockingServiceConfig config_;
+  bus::Participant& ring_;
   docking::Membership membership_;
   std::array<Peer, 33> peers_{};
   std::mutex orders_mutex_;

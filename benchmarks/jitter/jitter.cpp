@@ -66,7 +66,8 @@ void wait_for_end(double seconds, const runtime::StopFlag& stop) {
   deploy::wait_for(wait, from_s(seconds));
 }
 
-Block run_ours(const JitterOptions& options, const runtime::StopFlag& stop) {
+/// A block that could not be measured says why; those before it are not lost.
+Block run_ours(const JitterOptions& options, const runtime::StopFlag& stop) try {
   Block block;
   const auto at_most = static_cast<std::size_t>(2 * options.block_s / to_s(period)) + 10;
   bus::Participant ring({.vendor = options.dds, .domain = options.domain, .name = "control"});
@@ -86,6 +87,10 @@ Block run_ours(const JitterOptions& options, const runtime::StopFlag& stop) {
   block.step_us_mean = to_s(entry.statistics.execution_mean()) * 1e6;
   block.step_us_p99 = to_s(entry.statistics.execution().p99) * 1e6;
   if (!work.flies()) block.trouble = "control did not take off, so it did less than its work";
+  return block;
+} catch (const BadInput& bad) {
+  Block block;
+  block.trouble = bad.error.message;
   return block;
 }
 

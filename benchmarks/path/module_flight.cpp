@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <fstream>
-#include <map>
 #include <thread>
 
 #include "benchmarks/path/link_tap.hpp"
+#include "benchmarks/path/ring_participants.hpp"
 #include "core/base/wall_clock.hpp"
 #include "core/bus/plugin_loader.hpp"
 #include "deploy/module_config.hpp"
 #include "deploy/supervisor/launch_loop.hpp"
 #include "deploy/supervisor/module_plan.hpp"
-#include "idl/topics.hpp"
 
 namespace eciton::bench {
 namespace {
@@ -24,7 +23,6 @@ constexpr Duration pace = std::chrono::milliseconds(20);
 constexpr Duration start_timeout = std::chrono::seconds(40);
 constexpr Duration hover_timeout = std::chrono::seconds(60);
 constexpr Duration settle = std::chrono::seconds(1);
-constexpr double takeoff_height_m = 0.8;
 constexpr double ticks_per_s = 500;
 
 struct Failure {
@@ -103,102 +101,6 @@ void write_file(const fs::path& path, const std::string& text) {
   if (!out.flush()) throw Failure{"config " + path.string() + " cannot be written"};
 }
 
-/// Listens where the services meet; used by the tap's thread alone.
-class RingObserver {
- public:
-  RingObserver(const bus::ParticipantConfig& config, std::size_t commands_max)
-      : ring_(config), commands_(ring_.create_reader(topics::rotor_command)) {
-    ring_.set_all_wake(false);
-    seen_.reserve(commands_max);
-  }
-
-  /// Real-time safe. Often enough, since a reader holds only the newest.
-  void poll() {
-    ring_.set_now(wall_now());
-    while (const auto command = commands_.take()) {
-      if (seen_.size() == seen_.capacity()) continue;
-      std::array<RotorPrint, hal::sim::max_rotors> rotors;
-      for (std::size_t k = 0; k < command->value.rotors.size(); ++k) {
-        rotors[k] = {command->value.rotors[k].thrust_N, command->value.rotors[k].gimbal_rad};
-      }
-      seen_.push_back({command->value.stamp_ns, command->value.state_stamp_ns, command_print(rotors)});
-    }
-  }
-
-  const std::vector<CommandSeen>& seen() const { return seen_; }
-
- private:
-  bus::Participant ring_;
-  bus::Reader<msg::RotorCommand> commands_;
-  std::vector<CommandSeen> seen_;
-};
-
-/// Arms and takes off.
-class Pilot {
- public:
-  Pilot(const bus::ParticipantConfig& config, std::uint32_t module_id)
-      : ring_(config),
-        module_id_(module_id),
-        heartbeat_(ring_.create_reader(topics::heartbeat)),
-        status_(ring_.create_reader(topics::goal_status)),
-        mode_(ring_.create_writer(topics::mode_request)),
-        goal_(ring_.create_writer(topics::flight_goal)) {}
-
-  void poll() {
-    ring_.set_now(wall_now());
-    while (const auto beat = heartbeat_.take()) beats_[beat->value.service.c_str()] = beat->value;
-    while (const auto status = status_.take()) {
-      if (status->value.correlation_id == correlation_) answer_ = status->value;
-    }
-  }
-  bool alive(const std::string& service) const { return beats_.count(service) > 0; }
-  bool hovers() const {
-    const auto control = beats_.find("control");
-    return control != beats_.end() && control->second.flight_mode == msg::FlightMode::hover;
-  }
-
-  /// Asks again until it is granted: the estimator needs a moment.
-  void take_off(Duration now) {
-    if (now < ask_due_) return;
-    ask_due_ = now + std::chrono::milliseconds(300);
-    const bool armed = beats_["control"].flight_mode == msg::FlightMode::armed;
-    correlation_ = static_cast<std::uint64_t>(to_ns(wall_now()));
-    if (!armed && beats_["control"].flight_mode == msg::FlightMode::disarmed) {
-      mode_.write({.module_id = module_id_,
-                   .stamp_ns = to_ns(wall_now()),
-                   .correlation_id = correlation_,
-                   .action = msg::ModeAction::arm});
-    } else if (armed) {
-      msg::FlightGoal goal;
-      goal.module_id = module_id_;
-      goal.stamp_ns = to_ns(wall_now());
-      goal.correlation_id = correlation_;
-      goal.action = msg::FlightAction::takeoff;
-      goal.p_WM_m[2] = takeoff_height_m;
-      goal.q_WM = {1, 0, 0, 0};
-      goal_.write(goal);
-    }
-  }
-  std::string last_answer() const { return answer_ ? std::string(answer_->reason.view()) : "no answer"; }
-  std::vector<msg::Heartbeat> heartbeats() const {
-    std::vector<msg::Heartbeat> all;
-    for (const auto& [name, beat] : beats_) all.push_back(beat);
-    return all;
-  }
-
- private:
-  bus::Participant ring_;
-  std::uint32_t module_id_;
-  std::map<std::string, msg::Heartbeat> beats_;
-  std::optional<msg::GoalStatus> answer_;
-  std::uint64_t correlation_ = 0;
-  Duration ask_due_{};
-  bus::Reader<msg::Heartbeat> heartbeat_;
-  bus::Reader<msg::GoalStatus> status_;
-  bus::Writer<msg::ModeRequest> mode_;
-  bus::Writer<msg::FlightGoal> goal_;
-};
-
 /// The tap on a thread of its own; ends with its owner.
 class TapThread {
  public:
@@ -228,7 +130,8 @@ class Watch {
       : launches_(launches), control_(control), pilot_(pilot) {}
 
   /// Looks after the processes until `done`; throws Failure when one of them ends, or after `timeout`.
-  void until(const std::function<bool(Duration now)>& done, Duration timeout, const std::string& what) {
+  void until(const std::function<bool(Duration now)>& done, Duration timeout,
+             const std::function<std::string()>& lacks = {}) {
     const Duration end = monotonic_now() + timeout;
     for (Duration now = monotonic_now(); !done(now); now = monotonic_now()) {
       deploy::watch(launches_, {control_.stop.file_descriptor()}, pace,
@@ -236,8 +139,10 @@ class Watch {
                       throw Failure{deploy::describe(launch, report)};
                     });
       if (control_.stop.requested()) throw Failure{"interrupted"};
-      if (monotonic_now() > end)
-        throw Failure{what + " within " + std::to_string(timeout / std::chrono::seconds(1)) + " s"};
+      if (monotonic_now() > end) {
+        throw Failure{(lacks ? lacks() : "not done") + " within " +
+                      std::to_string(timeout / std::chrono::seconds(1)) + " s"};
+      }
       pilot_.poll();
     }
   }
@@ -261,20 +166,20 @@ void fly_and_record(const PathOptions& options, const FlightVariant& variant, de
   Watch watch(launches, control, pilot);
   tell(variant.name() + ": starting");
   watch.until([&](Duration) { return pilot.alive("control") && pilot.alive("estimation") && tap.passed() > 100; },
-              start_timeout, "the services were not heard");
+              start_timeout, [] { return "the services were not heard"; });
   tell(variant.name() + ": taking off");
   watch.until(
       [&](Duration now) {
         pilot.take_off(now);
         return pilot.hovers();
       },
-      hover_timeout, "no hover (" + pilot.last_answer() + ")");
+      hover_timeout, [&] { return "no hover (" + pilot.last_answer() + ")"; });
   const Duration settled = monotonic_now() + settle;
-  watch.until([&](Duration now) { return now >= settled; }, 2 * settle, "");
+  watch.until([&](Duration now) { return now >= settled; }, 2 * settle);
   tell(variant.name());
   tap.record(true);
   const Duration end = monotonic_now() + from_s(options.seconds);
-  watch.until([&](Duration now) { return now >= end; }, from_s(options.seconds) + start_timeout, "");
+  watch.until([&](Duration now) { return now >= end; }, from_s(options.seconds) + start_timeout);
   tap.record(false);
   if (!pilot.hovers()) throw Failure{"it did not stay in hover"};
 }
@@ -315,6 +220,8 @@ FlightRecord fly(const PathOptions& options, const FlightVariant& variant, const
     fly_and_record(options, variant, launches, pilot, tap.tap(), control, tell);
   } catch (const Failure& failure) {
     record.trouble = variant.name() + ": " + failure.why;
+  } catch (const BadInput& bad) {
+    record.trouble = variant.name() + ": " + bad.error.message;
   }
   deploy::stop_all(launches);
   tap.join();

@@ -168,10 +168,16 @@ Result run_path(const PathOptions& given, const runtime::StopFlag& stop, const P
   for (std::size_t k = 0; k < order.size() && !control.stop.requested(); ++k) {
     VariantResult& r = results[order[k]];
     const double left_s = static_cast<double>(order.size() - k) * (options.seconds + prelude_s);
-    const FlightRecord record = fly(options, r.variant, control,
-                                    [&](const std::string& doing) { control.tell(k, order.size(), left_s, doing); });
-    append(r, record, begin_ns);
-    if (!record.trouble.empty()) result.notes.push_back(record.trouble);
+    try {
+      const FlightRecord record = fly(options, r.variant, control, [&](const std::string& doing) {
+        control.tell(k, order.size(), left_s, doing);
+      });
+      append(r, record, begin_ns);
+      if (!record.trouble.empty()) result.notes.push_back(record.trouble);
+    } catch (const BadInput& bad) {
+      if (k == 0) throw;  // nothing was measured yet that would be lost
+      result.notes.push_back(r.variant.name() + ": " + bad.error.message);
+    }
   }
   result.partial = !result.notes.empty() || control.stop.requested();
   result.notes.push_back(

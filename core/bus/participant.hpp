@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,8 +75,9 @@ class Participant {
   void set_clock_offset(std::uint32_t module_id, Duration offset) {
     if (module_id < clock_offset_.size()) clock_offset_[module_id] = offset;
   }
-  Duration clock_offset(std::uint32_t module_id) const {
-    return module_id < clock_offset_.size() ? clock_offset_[module_id] : Duration{};
+  /// Nothing: not known yet.
+  std::optional<Duration> clock_offset(std::uint32_t module_id) const {
+    return module_id < clock_offset_.size() ? clock_offset_[module_id] : std::nullopt;
   }
 
   /// Signalled when a reader of this participant may have samples, unless it was told not to wake.
@@ -100,7 +102,7 @@ class Participant {
   Waker* waker_;
   bool readers_wake_ = true;
   TimePoint now_{};
-  std::array<Duration, 128> clock_offset_{};
+  std::array<std::optional<Duration>, 128> clock_offset_{};
   std::vector<ReaderCore*> readers_;
   std::vector<InlineReaderCore*> inline_readers_;
   std::uint64_t dropped_by_gone_readers_ = 0;

@@ -83,7 +83,7 @@ class Reader {
       Duration offset{};
       if constexpr (requires { value.module_id; }) {
         // A command's key is whom it is for, not who sent it.
-        if (topic_.qos != QosClass::command) offset = participant_.clock_offset(value.module_id);
+        if (topic_.qos != QosClass::command) offset = participant_.clock_offset(value.module_id).value_or(Duration{});
       }
       return participant_.now() - (from_ns(value.stamp_ns) - offset);
     }

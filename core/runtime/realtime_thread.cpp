@@ -34,4 +34,14 @@ std::optional<std::string> make_realtime(int priority) {
   return missing.empty() ? std::nullopt : std::optional("not real-time: " + missing);
 }
 
+RealtimeForNewThreads::RealtimeForNewThreads(int priority) {
+  const sched_param parameters{.sched_priority = priority};
+  changed_ = priority > 0 && ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters) == 0;
+}
+
+RealtimeForNewThreads::~RealtimeForNewThreads() {
+  const sched_param parameters{.sched_priority = 0};
+  if (changed_) ::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &parameters);
+}
+
 }  // namespace eciton::runtime

@@ -42,8 +42,8 @@ ServiceGroup::ServiceGroup(const ExecutorConfig& config, std::vector<bus::Partic
   }
   if (config_.heartbeat_period > Duration::zero()) {
     heartbeat_.emplace(module_ring().create_writer(topics::heartbeat));
-    beacon_.emplace(module_ring().create_reader(topics::beacon));
-    beacon_->trigger().set_wakes(false);
+    radio_state_.emplace(module_ring().create_reader(topics::radio_state));
+    radio_state_->trigger().set_wakes(false);
   }
 }
 
@@ -173,10 +173,9 @@ Pace ServiceGroup::next_step_due() const noexcept {
 
 void ServiceGroup::learn_clock_offsets() noexcept {
   // So that every process turns a peer's stamps into ages as the radio does.
-  while (const auto beacon = beacon_->take()) {
-    if (beacon->value.module_id != config_.module_id) continue;
-    for (const msg::PeerEcho& peer : beacon->value.peers) {
-      if (peer.offset_bound_ns < 0) continue;
+  while (const auto radio = radio_state_->take()) {
+    if (radio->value.module_id != config_.module_id) continue;
+    for (const msg::PeerClock& peer : radio->value.peers) {
       for (bus::Participant* participant : participants_) {
         participant->set_clock_offset(peer.module_id, Duration{peer.offset_ns});
       }

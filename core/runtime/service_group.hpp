@@ -98,7 +98,7 @@ class ServiceGroup {
   Pacing pacing_;
   std::vector<std::unique_ptr<Entry>> entries_;
   std::optional<bus::Writer<msg::Heartbeat>> heartbeat_;
-  std::optional<bus::Reader<msg::Beacon>> beacon_;  // our module's own, which knows how the peers' clocks stand
+  std::optional<bus::Reader<msg::RadioState>> radio_state_;  // which knows how the peers' clocks stand
   Pace next_heartbeat_ = Pace::max();
   Pace next_checkpoint_{};
 };

@@ -5,6 +5,7 @@
 #include "core/base/log.hpp"
 #include "core/base/wall_clock.hpp"
 #include "core/runtime/lockstep_master.hpp"
+#include "core/runtime/realtime_thread.hpp"
 #include "core/runtime/service_group.hpp"
 #include "deploy/module.hpp"
 #include "deploy/program.hpp"
@@ -82,7 +83,9 @@ class SimulatedHost {
     const Duration until = monotonic_now() + (lockstep_ ? command_wait_lockstep : command_wait_wall);
     while (!stop_.requested()) {
       commands_->fetch();
-      if (lockstep_ ? commands_->newest_stamp() >= now : commands_->has_sample()) return;
+      // By the stamp, on the wall clock too: a command that came late for the last tick, taken for this one's, would
+      // leave this one's to the next, and so on for ever.
+      if (commands_->newest_stamp() >= now) return;
       if (monotonic_now() >= until) return;
       sleeper_->until(until);
     }
@@ -112,7 +115,16 @@ int run(int argc, char** argv) {
   start_log(config.name + "/hardware", options.log_level);
   runtime::StopFlag stop;
   const runtime::StopOnSignals on_signals(stop);
-  SimulatedHost(config, stop).run();
+  std::optional<SimulatedHost> host;
+  {
+    // Samples come through the vendor's threads: late there is late everywhere.
+    const runtime::RealtimeForNewThreads vendor_too(config.realtime_priority);
+    host.emplace(config, stop);
+  }
+  if (config.realtime_priority > 0) {
+    if (const auto missing = runtime::make_realtime(config.realtime_priority)) spdlog::warn("{}", *missing);
+  }
+  host->run();
   return 0;
 }
 

@@ -7,6 +7,7 @@
 #include "core/base/wall_clock.hpp"
 #include "core/runtime/lockstep_executor.hpp"
 #include "core/runtime/realtime_executor.hpp"
+#include "core/runtime/realtime_thread.hpp"
 #include "deploy/module.hpp"
 #include "deploy/program.hpp"
 
@@ -32,6 +33,8 @@ int run(int argc, char** argv) {
 
   runtime::StopFlag stop;
   const runtime::StopOnSignals on_signals(stop);
+  // Samples come through the vendors' threads: late there is late everywhere.
+  std::optional<runtime::RealtimeForNewThreads> vendors_too(std::in_place, config.realtime_priority);
   bus::Participant ring(config.module_participant(process));
   std::optional<bus::Participant> swarm;
   std::vector<bus::Participant*> participants{&ring};
@@ -40,6 +43,7 @@ int run(int argc, char** argv) {
     swarm.emplace(config.swarm_participant(process), &ring.waker());
     participants.push_back(&*swarm);
   }
+  vendors_too.reset();
   std::vector<std::unique_ptr<runtime::Service>> services;
   for (const std::string& name : options.names) {
     services.push_back(deploy::make_service(name, config, ring, swarm ? &*swarm : nullptr));

@@ -19,10 +19,12 @@ DockingService::DockingService(bus::Participant& ring, const DockingServiceConfi
                                const robot::Airframe& airframe)
     : config_(config),
       airframe_(airframe),
+      ring_(ring),
       membership_(ring, {.module_id = config.module_id,
                          .incarnation = config.incarnation,
                          .ports = static_cast<std::uint32_t>(airframe.ports.size()),
-                         .claims_muted = config.claims_muted}),
+                         .claims_muted = config.claims_muted,
+                         .start_margin_s = config.start_margin_s}),
       follower_(config.sequence),
       target_(config.target),
       dock_goal_(ring.create_reader(topics::dock_goal)),
@@ -111,17 +113,10 @@ void DockingService::take_beacons() noexcept {
   while (const auto s = beacons_.take()) {
     const msg::Beacon& beacon = s->value;
     Module* m = find(beacon.module_id);
-    if (m == nullptr) continue;
-    if (m != &own()) {
-      m->flying = in_the_air(beacon.flight_mode);
-      m->zeroed = m->zeroed || beacon.wrench_zeroed;
-      m->heard = std::max(m->heard, last_step_);
-      continue;
-    }
-    for (const msg::PeerEcho& echo : beacon.peers) {
-      Module* peer = find(echo.module_id);
-      if (peer != nullptr && echo.offset_bound_ns >= 0) peer->clock_offset = Duration(echo.offset_ns);
-    }
+    if (m == nullptr || m == &own()) continue;
+    m->flying = in_the_air(beacon.flight_mode);
+    m->zeroed = m->zeroed || beacon.wrench_zeroed;
+    m->heard = std::max(m->heard, last_step_);
   }
 }
 
@@ -129,7 +124,7 @@ void DockingService::update_membership(TimePoint now) noexcept {
   BoundedVector<chain::PeerStatus, std::tuple_size_v<decltype(modules_)>> peers;
   for (const Module& m : modules_) {
     if (m.id == 0 || m.id == config_.module_id) continue;
-    peers.push_back({.module = m.id, .fresh = is_fresh(m, now), .clock_offset = m.clock_offset});
+    peers.push_back({.module = m.id, .fresh = is_fresh(m, now), .clock_offset = ring_.clock_offset(m.id)});
   }
   membership_.update(now, {peers.data(), peers.size()});
 }

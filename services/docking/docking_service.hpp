@@ -20,6 +20,7 @@ struct DockingServiceConfig {
   std::uint32_t module_id = 0;
   std::uint64_t incarnation = 1;
   double rate_Hz = 100;
+  double start_margin_s = 0.1;   // of a chain view, from its decision to its start: a few crossings of the radio
   double state_rate_Hz = 20;     // of docking_state while docking; it is published on every change besides
   double target_filter_s = 0.2;  // the reference follows the target's pose smoothed by this
   double push_bias_s = 1.0;      // the push before contact, smoothed by this, counts as none
@@ -31,6 +32,7 @@ struct DockingServiceConfig {
   template <class V>
   void visit_fields(V& v) {
     v("rate_Hz", rate_Hz, in_range(20, 500));
+    v("start_margin_s", start_margin_s, in_range(0.01, 1));
     v("state_rate_Hz", state_rate_Hz, in_range(1, 100));
     v("target_filter_s", target_filter_s, in_range(0, 5));
     v("push_bias_s", push_bias_s, in_range(0.05, 10));
@@ -67,7 +69,6 @@ class DockingService final : public runtime::Service {
     std::array<double, robot::joints_max> joint_rad{};
     bool flying = false;
     bool zeroed = false;
-    std::optional<Duration> clock_offset;
   };
   /// What joins the follower's port to the target's.
   struct Pairing {
@@ -102,6 +103,7 @@ class DockingService final : public runtime::Service {
 
   DockingServiceConfig config_;
   robot::Airframe airframe_;
+  bus::Participant& ring_;
   Membership membership_;
   DockingSequence follower_;
   TargetSequence target_;

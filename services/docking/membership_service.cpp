@@ -44,7 +44,11 @@ chain::Announcement from_message(const msg::ChainView& m) {
 
 Membership::Membership(bus::Participant& ring, const MembershipConfig& config)
     : config_(config),
-      agreement_({.module = config.module_id, .incarnation = config.incarnation, .ports = config.ports}, rule_),
+      agreement_({.module = config.module_id,
+                  .incarnation = config.incarnation,
+                  .ports = config.ports,
+                  .start_margin = from_s(config.start_margin_s)},
+                 rule_),
       latch_state_(ring.create_reader(topics::latch_state)),
       link_claims_(ring.create_reader(topics::link_claim)),
       chain_views_(ring.create_reader(topics::chain_view)),

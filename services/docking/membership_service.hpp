@@ -16,9 +16,10 @@ struct MembershipConfig {
   std::uint32_t module_id = 0;
   std::uint64_t incarnation = 1;
   std::uint32_t ports = 2;
-  bool claims_muted = false;  // an experiment's control: claims are made but never published
-  double listen_s = 0.5;      // after a start, before somebody's claim is believed to name our port's peer
-  double repeat_s = 1.0;      // what is announced is said again so often: a late listener needs no history
+  bool claims_muted = false;    // an experiment's control: claims are made but never published
+  double start_margin_s = 0.1;  // of a view, from decision to start
+  double listen_s = 0.5;        // after a start, before somebody's claim is believed to name our port's peer
+  double repeat_s = 1.0;        // what is announced is said again so often: a late listener needs no history
 };
 
 class Membership {

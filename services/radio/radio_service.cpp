@@ -17,7 +17,8 @@ std::uint32_t module_of(const bus::TopicInfo& topic, std::span<const std::uint8_
          static_cast<std::uint32_t>(hash[2]) << 8 | hash[3];
 }
 
-constexpr std::uint32_t rtps_overhead_bytes = 210;  // headers of one sample on the air, measured with a dissector
+constexpr Duration echo_age_max = std::chrono::seconds(20);  // of a peer that is still there
+constexpr std::uint32_t rtps_overhead_bytes = 98;  // Ethernet 14, IP 20, UDP 8, RTPS 20, time stamp 12, data 24
 
 }  // namespace
 
@@ -47,6 +48,8 @@ RadioService::RadioService(bus::Participant& ring, bus::Participant& swarm, cons
       beacons_heard_(swarm.create_reader(topics::beacon)),
       beacon_to_swarm_(swarm.create_writer(topics::beacon)),
       beacon_to_ring_(ring.create_writer(topics::beacon)),
+      radio_state_(ring.create_writer(topics::radio_state)),
+      module_info_(ring.create_writer(topics::module_info)),
       fault_(ring.create_writer(topics::fault)) {
   routes_.reserve(std::tuple_size_v<decltype(topics::all)>);
   topics::for_each([this](const auto& topic) {
@@ -57,8 +60,6 @@ RadioService::RadioService(bus::Participant& ring, bus::Participant& swarm, cons
   });
   beacon_.module_id = config.module_id;
   beacon_.incarnation = config.incarnation;
-  beacon_.name.assign(config.name);
-  beacon_.airframe.assign(config.airframe);
 }
 
 RadioService::~RadioService() = default;
@@ -84,6 +85,7 @@ void RadioService::add_route(const bus::TopicInfo& topic) {
 
 void RadioService::step(TimePoint now) noexcept {
   now_ = now;
+  introduce(now);
   watch_own_module();
   hear_beacons(now);
   for (Route& route : routes_) {
@@ -155,22 +157,25 @@ void RadioService::watch_own_module() noexcept {
 }
 
 void RadioService::hear_beacons(TimePoint now) noexcept {
+  bool clocks_learned = false;
   while (const auto heard = beacons_heard_.take()) {
     const msg::Beacon& beacon = heard->value;
     if (beacon.module_id == config_.module_id) {
       meet_own_id(beacon, now);
       continue;
     }
-    PeerClock& clock = clocks_[beacon.module_id % clocks_.size()];
+    beacon_to_ring_.write(beacon);
+    if (beacon.module_id >= clocks_.size()) continue;
+    heard_[beacon.module_id] = {beacon.stamp_ns, now};
+    PeerClock& clock = clocks_[beacon.module_id];
     clock.hear(now, from_ns(beacon.stamp_ns));
     for (const msg::PeerEcho& echo : beacon.peers) {
       if (echo.module_id != config_.module_id) continue;
       clock.echo(now, from_ns(beacon.stamp_ns), from_ns(echo.stamp_ns), from_ns(echo.received_ns));
+      clocks_learned = true;
     }
-    if (const auto offset = clock.offset(now)) ring_.set_clock_offset(beacon.module_id, offset->offset);
-    note_echo(beacon, now);
-    beacon_to_ring_.write(beacon);
   }
+  if (clocks_learned) write_state(now);
 }
 
 void RadioService::meet_own_id(const msg::Beacon& beacon, TimePoint now) noexcept {
@@ -185,34 +190,58 @@ void RadioService::meet_own_id(const msg::Beacon& beacon, TimePoint now) noexcep
   fault_.write(out);
 }
 
-void RadioService::note_echo(const msg::Beacon& beacon, TimePoint now) noexcept {
-  msg::PeerEcho* entry = nullptr;
-  for (msg::PeerEcho& echo : beacon_.peers) {
-    if (echo.module_id == beacon.module_id) entry = &echo;
-  }
-  if (entry == nullptr) {
-    if (!beacon_.peers.push_back({})) return;  // the beacon names sixteen peers at the most
-    entry = &beacon_.peers.back();
-  }
-  entry->module_id = beacon.module_id;
-  entry->stamp_ns = beacon.stamp_ns;
-  entry->received_ns = to_ns(now);
-  const auto offset = clocks_[beacon.module_id % clocks_.size()].offset(now);
-  entry->offset_ns = offset ? offset->offset.count() : 0;
-  entry->offset_bound_ns = offset ? offset->bound.count() : -1;
+void RadioService::introduce(TimePoint now) noexcept {
+  if (introduced_) return;
+  introduced_ = true;
+  msg::ModuleInfo info{.module_id = config_.module_id,
+                       .stamp_ns = to_ns(now),
+                       .incarnation = config_.incarnation,
+                       .name = {},
+                       .airframe = {}};
+  info.name.assign(config_.name);
+  info.airframe.assign(config_.airframe);
+  module_info_.write(info);
 }
 
 void RadioService::send_beacon(TimePoint now) noexcept {
+  const bool idle = !near_ && urgent_beacons_ == 0;
   beacon_.stamp_ns = to_ns(now);
   beacon_.duplicate_id = duplicate_id_;
-  beacon_.airtime = airtime_.share(now);
-  beacon_.sent = sent_;
-  beacon_.dropped = dropped_;
+  add_echoes(idle ? 1 : beacon_.peers.bound(), now);
   own_id_.hear(now, config_.incarnation, now);
-  beacon_to_swarm_.write(beacon_);
+  ++(beacon_to_swarm_.write(beacon_) ? sent_ : dropped_);
   beacon_to_ring_.write(beacon_);
+  write_state(now);
   beacon_due_ = now + from_s(near_ ? config_.beacon_near_period_s : config_.beacon_period_s);
   if (urgent_beacons_ > 0 && --urgent_beacons_ > 0) beacon_due_ = now + from_s(config_.beacon_urgent_period_s);
+}
+
+void RadioService::add_echoes(std::size_t most, TimePoint now) noexcept {
+  beacon_.peers.clear();
+  for (std::size_t k = 0; k < heard_.size() && beacon_.peers.size() < most; ++k) {
+    echoed_ = (echoed_ + 1) % heard_.size();
+    const Heard& heard = heard_[echoed_];
+    if (!heard.received || std::chrono::abs(now - *heard.received) > echo_age_max) continue;
+    beacon_.peers.push_back({.module_id = static_cast<std::uint32_t>(echoed_),
+                             .stamp_ns = heard.stamp_ns,
+                             .received_ns = to_ns(*heard.received)});
+  }
+}
+
+void RadioService::write_state(TimePoint now) noexcept {
+  msg::RadioState state{.module_id = config_.module_id,
+                        .stamp_ns = to_ns(now),
+                        .airtime = airtime_.share(now),
+                        .sent = sent_,
+                        .dropped = dropped_,
+                        .peers = {}};
+  for (std::uint32_t id = 0; id < clocks_.size(); ++id) {
+    const auto offset = clocks_[id].offset(now);
+    if (!offset) continue;
+    state.peers.push_back(
+        {.module_id = id, .offset_ns = offset->offset.count(), .offset_bound_ns = offset->bound.count()});
+  }
+  radio_state_.write(state);
 }
 
 }  // namespace eciton::radio

@@ -1,8 +1,9 @@
 // The one bridge between a module's ring and the swarm ring: forwards the topics whose scope is swarm,
-// byte for byte, within their rates; sends the beacon; knows every peer's clock.
+// byte for byte, within their rates; introduces its module and sends its beacon; knows every peer's clock.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,8 +63,10 @@ class RadioService final : public runtime::Service {
   void watch_own_module() noexcept;
   void hear_beacons(TimePoint now) noexcept;
   void meet_own_id(const msg::Beacon& beacon, TimePoint now) noexcept;
-  void note_echo(const msg::Beacon& beacon, TimePoint now) noexcept;
   void send_beacon(TimePoint now) noexcept;
+  void add_echoes(std::size_t most, TimePoint now) noexcept;
+  void write_state(TimePoint now) noexcept;
+  void introduce(TimePoint now) noexcept;
 
   RadioConfig config_;
   bus::Participant& ring_;
@@ -82,7 +85,15 @@ class RadioService final : public runtime::Service {
   std::uint64_t sent_ = 0;
   std::uint64_t dropped_ = 0;
   msg::Beacon beacon_;
+  /// A peer's last beacon, to be echoed.
+  struct Heard {
+    std::int64_t stamp_ns = 0;  // its clock
+    std::optional<TimePoint> received;
+  };
   std::array<PeerClock, 128> clocks_;  // by module id
+  std::array<Heard, 128> heard_;       // likewise
+  std::size_t echoed_ = 0;             // the last one, by turns
+  bool introduced_ = false;
 
   bus::Reader<msg::DockingState> docking_state_;
   bus::Reader<msg::ChainView> chain_view_;
@@ -92,6 +103,8 @@ class RadioService final : public runtime::Service {
   bus::Reader<msg::Beacon> beacons_heard_;
   bus::Writer<msg::Beacon> beacon_to_swarm_;
   bus::Writer<msg::Beacon> beacon_to_ring_;
+  bus::Writer<msg::RadioState> radio_state_;
+  bus::Writer<msg::ModuleInfo> module_info_;
   bus::Writer<msg::Fault> fault_;
 };
 

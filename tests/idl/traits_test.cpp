@@ -58,10 +58,9 @@ TEST(TypeTraitsTest, CountsStringsWithLengthAndTerminator) {
 }
 
 TEST(TypeTraitsTest, AlignsEachElementOfASequenceOfStructs) {
-  // Beacon: id 0-4, stamp 8-16, incarnation 16-24, name 24-60, airframe 60-96, two modes 96-104, flag 104-105,
-  // airtime 112-120, sent 120-128, dropped 128-136, count 136-140. Echoes: the first 140-176 (id 140-144, then
-  // four int64), every further one 40 more (4 of padding after its id).
-  EXPECT_EQ(TypeTraits<msg::Beacon>::size_max, 4U + 176U + 15U * 40U);
+  // Beacon: id 0-4, mode 4-8, stamp 8-16, incarnation 16-24, mode 24-28, flags 28-30, count 32-36. Echoes: the first
+  // 36-56 (id 36-40, then two int64), every further one 24 more (4 of padding after its id).
+  EXPECT_EQ(TypeTraits<msg::Beacon>::size_max, 4U + 56U + 15U * 24U);
 }
 
 TEST(TypeTraitsTest, ComputesTheSizeOfEveryKindOfMember) {
@@ -102,7 +101,7 @@ TEST(TypeTraitsTest, LetsAVisitorChangeTheSample) {
 
 TEST(TypeTraitsTest, MapsIdlTypesToPlainCpp) {
   EXPECT_TRUE((std::is_same_v<decltype(msg::ModuleState::p_WM_m), std::array<double, 3>>));
-  EXPECT_TRUE((std::is_same_v<decltype(msg::Beacon::name), BoundedString<31>>));
+  EXPECT_TRUE((std::is_same_v<decltype(msg::ModuleInfo::name), BoundedString<31>>));
   EXPECT_TRUE((std::is_same_v<decltype(msg::Beacon::peers), BoundedVector<msg::PeerEcho, 16>>));
   EXPECT_TRUE((std::is_same_v<decltype(msg::LinkClaim::withdrawn), bool>));
   EXPECT_TRUE((std::is_same_v<decltype(EveryKind::mode), eciton_test::IMUMode>));

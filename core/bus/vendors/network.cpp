@@ -6,6 +6,7 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -20,6 +21,11 @@ std::string dotted(const sockaddr* address) {
   char text[INET_ADDRSTRLEN] = "";
   inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(address)->sin_addr, text, sizeof text);
   return text;
+}
+
+/// No peers at all count as such.
+bool all_on_loopback(const std::vector<std::string>& peers) {
+  return std::all_of(peers.begin(), peers.end(), [](const std::string& peer) { return peer.starts_with("127."); });
 }
 
 std::string joined(const std::set<std::string>& names) {
@@ -66,10 +72,29 @@ Result<std::vector<std::string>> peer_addresses(const char* const* peers, std::u
   return addresses;
 }
 
-int unicast_participants(const std::vector<std::string>& peers) {
-  const bool loopback =
-      std::all_of(peers.begin(), peers.end(), [](const std::string& peer) { return peer.starts_with("127."); });
-  return loopback ? kUnicastParticipantsOnLoopback : kUnicastParticipantsPerHost;
+AnnouncementPace announcement_pace(std::uint32_t lease_ms, const std::vector<std::string>& peers) {
+  constexpr std::uint32_t unicast_lease_ms = 90'000;
+  const std::uint32_t lease = all_on_loopback(peers) ? lease_ms : std::max(lease_ms, unicast_lease_ms);
+  return {.period_ms = lease / 3, .lease_ms = lease};
+}
+
+UnicastRange unicast_range(const std::vector<std::string>& peers) {
+  return all_on_loopback(peers) ? UnicastRange{.participants = 40, .announced_to = 40} : UnicastRange{};
+}
+
+int first_discovery_port(std::uint32_t domain) { return 7400 + 250 * static_cast<int>(domain) + 10; }
+int free_discovery_port(std::uint32_t domain) {
+  const int first = first_discovery_port(domain);
+  for (int port = first; port < first + 2 * UnicastRange{}.participants; port += 2) {
+    const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    const bool free = bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    close(fd);
+    if (free) return port;
+  }
+  return first;
 }
 
 }  // namespace eciton::bus::vendors

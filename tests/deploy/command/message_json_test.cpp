@@ -44,10 +44,12 @@ TEST(MessageJsonTest, ShowsArraysStringsAndBooleans) {
   EXPECT_EQ(to_json(imu)["specific_force_M_m_s2"].dump(), "[0.1,-2.0,9.81]");
   EXPECT_NE(to_text(to_json(imu)).find("specific_force_M_m_s2: [0.1, -2, 9.81]\n"), std::string::npos);
 
+  msg::ModuleInfo module;
+  module.name = "seven \"of\" nine";
+  EXPECT_EQ(to_json(module)["name"].dump(), R"("seven \"of\" nine")");
+
   msg::Beacon beacon;
-  beacon.name = "seven \"of\" nine";
   beacon.duplicate_id = true;
-  EXPECT_EQ(to_json(beacon)["name"].dump(), R"("seven \"of\" nine")");
   EXPECT_EQ(to_json(beacon)["duplicate_id"].dump(), "true");
   EXPECT_EQ(to_json(beacon)["peers"].dump(), "[]");
 }

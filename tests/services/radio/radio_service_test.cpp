@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <optional>
 
 #include "core/bus/vendors/sim_network/sim_network.hpp"
@@ -39,6 +40,9 @@ class RadioServiceTest : public ::testing::Test {
     bus::Participant peer{on(swarm_domain, "peer")};
     bus::Writer<msg::ModuleState> peer_state = peer.create_writer(topics::module_state);
     bus::Writer<msg::FlightGoal> peer_goal = peer.create_writer(topics::flight_goal);
+    bus::Writer<msg::Beacon> peer_beacon = peer.create_writer(topics::beacon);
+    bus::Reader<msg::RadioState> radio_state = services.create_reader(topics::radio_state);
+    bus::Reader<msg::ModuleInfo> info_outside = ear.create_reader(topics::module_info);
   };
   struct Counts {
     int states = 0, wrenches = 0, joints = 0, peer_states = 0, beacons = 0;
@@ -78,7 +82,11 @@ class RadioServiceTest : public ::testing::Test {
         ++(heard->value.module_id == own_id ? counts.states : counts.peer_states);
       while (rings_->wrench_outside.take()) ++counts.wrenches;
       while (rings_->joints_outside.take()) ++counts.joints;
-      while (rings_->beacon_outside.take()) ++counts.beacons;
+      while (const auto heard = rings_->beacon_outside.take()) {
+        if (heard->value.module_id != own_id) continue;
+        ++counts.beacons;
+        beacon_ = heard->value;
+      }
     }
     return counts;
   }
@@ -90,6 +98,7 @@ class RadioServiceTest : public ::testing::Test {
   TimePoint now_{10000s};
   Duration clock_ahead_{};  // of the module's clock
   std::optional<Rings> rings_;
+  msg::Beacon beacon_;  // the last one of module 1
 };
 
 TEST_F(RadioServiceTest, ThinsOutTheStateOfItsModule) {
@@ -146,6 +155,69 @@ TEST_F(RadioServiceTest, BringsInThePeersStatesButNeverSendsThemBack) {
   }
   EXPECT_EQ(inside, 100);
   EXPECT_EQ(outside, 100) << "each once: from the peer itself";
+}
+
+TEST_F(RadioServiceTest, EchoesOnePeerByTurnsWhileIdleAndAllNearOne) {
+  Rings& rings = start();
+  run(5s);  // past the beacons that follow the start
+  std::map<std::uint32_t, int> echoed;
+  for (int second = 0; second < 24; ++second) {
+    for (const std::uint32_t id : {2u, 5u, 9u}) {
+      rings.peer_beacon.write(msg::Beacon{.module_id = id, .stamp_ns = to_ns(now_) + id});
+    }
+    if (run(1s).beacons == 0) continue;
+    ASSERT_EQ(beacon_.peers.size(), 1u) << "each one is a sixth of the beacon, to every peer";
+    const msg::PeerEcho& echo = beacon_.peers[0];
+    ++echoed[echo.module_id];
+    EXPECT_EQ(echo.stamp_ns % 1000, echo.module_id) << "the stamp as that peer gave it";
+    EXPECT_LE(echo.received_ns, beacon_.stamp_ns);
+    EXPECT_GE(echo.received_ns, echo.stamp_ns - echo.module_id);
+  }
+  EXPECT_EQ(echoed, (std::map<std::uint32_t, int>{{2, 4}, {5, 4}, {9, 4}}));
+  dock(msg::DockingPhase::approach);
+  run(2s);
+  EXPECT_EQ(beacon_.peers.size(), 3u);
+  run(30s);
+  EXPECT_EQ(beacon_.peers.size(), 0u) << "peers that are gone are echoed no more";
+}
+
+TEST_F(RadioServiceTest, TellsItsServicesHowThePeersClocksStand) {
+  Rings& rings = start();
+  run(5s);
+  constexpr Duration ahead = 37s;  // of the peer's clock
+  const auto sent = TimePoint(from_ns(beacon_.stamp_ns));
+  // Received 4 ms after it was sent, answered 6 ms later, on the peer's clock.
+  msg::Beacon answer{.module_id = peer_id, .stamp_ns = to_ns(sent + 10ms + ahead)};
+  answer.peers.push_back(
+      {.module_id = own_id, .stamp_ns = beacon_.stamp_ns, .received_ns = to_ns(sent + 4ms + ahead)});
+  const Duration round_trip = now_ - sent - 6ms;
+  rings.peer_beacon.write(answer);
+  run(20ms);
+  std::optional<msg::RadioState> state;
+  while (const auto heard = rings.radio_state.take()) state = heard->value;
+  ASSERT_TRUE(state);
+  ASSERT_EQ(state->peers.size(), 1u);
+  EXPECT_EQ(state->peers[0].module_id, peer_id);
+  EXPECT_NEAR(to_s(Duration{state->peers[0].offset_ns} - ahead), 0, to_s(Duration{state->peers[0].offset_bound_ns}));
+  EXPECT_NEAR(to_s(Duration{state->peers[0].offset_bound_ns}), to_s(round_trip) / 2, 0.011) << "a step of the radio";
+  EXPECT_EQ(state->dropped, 0u);
+  EXPECT_GT(state->sent, 200u);
+}
+
+TEST_F(RadioServiceTest, IntroducesItsModuleOnce) {
+  RadioConfig config;
+  config.name = "left";
+  config.airframe = "legion";
+  Rings& rings = start(config);
+  run(10s);
+  int introductions = 0;
+  while (const auto heard = rings.info_outside.take()) {
+    ++introductions;
+    EXPECT_EQ(heard->value.module_id, own_id);
+    EXPECT_EQ(heard->value.name, "left");
+    EXPECT_EQ(heard->value.airframe, "legion");
+  }
+  EXPECT_EQ(introductions, 1);
 }
 
 TEST_F(RadioServiceTest, BringsInGoalsWhoeverTheyAreForAndSendsNone) {

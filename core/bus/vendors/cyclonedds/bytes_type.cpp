@@ -256,8 +256,9 @@ const ddsi_sertype_ops kSertypeOps = {
 
 ddsi_sertype* new_bytes_sertype(const eciton_type& type) {
   auto* sertype = new BytesSertype{};
+  // No key hash is asked for: the leading members are the key, and each sample would be 24 bytes larger for it.
   ddsi_sertype_init_flags(sertype, type.name, &kSertypeOps, &kSerdataOps,
-                          type.key_size > 0 ? DDSI_SERTYPE_FLAG_REQUEST_KEYHASH : DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
+                          type.key_size > 0 ? 0 : DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
   sertype->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   sertype->type = type;
   sertype->type.name = sertype->type_name;

@@ -10,6 +10,8 @@
 #include "core/bus/vendors/cyclonedds/vendor.hpp"
 #include "core/bus/vendors/network.hpp"
 
+extern "C" void eciton_cyclonedds_set_key_hashes(ddsi_domaingv* domain, int on);  // key_hash_setting.c
+
 namespace eciton::bus::cyclonedds {
 namespace {
 
@@ -18,6 +20,7 @@ struct Settings {
   std::string address;
   std::vector<std::string> peers;
   std::uint32_t lease_ms = 0;
+  std::uint32_t domain = 0;
 };
 
 struct OpenDomain {
@@ -44,16 +47,21 @@ std::string configuration(const Settings& settings) {
       << "\" multicast=\"" << (multicast ? "true" : "false") << "\"/></Interfaces><AllowMulticast>"
       << (multicast ? "spdp" : "false") << "</AllowMulticast></General><Discovery>";
   if (!multicast) {
-    xml << "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>"
-        << vendors::unicast_participants(settings.peers) - 1 << "</MaxAutoParticipantIndex><Peers>";
-    for (const std::string& peer : settings.peers) xml << "<Peer Address=\"" << peer << "\"/>";
+    const vendors::UnicastRange range = vendors::unicast_range(settings.peers);
+    xml << "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>" << range.participants - 1
+        << "</MaxAutoParticipantIndex><Peers>";
+    const std::string port =  // without one: all that participants may have
+        range.announced_to == 1 ? ":" + std::to_string(vendors::first_discovery_port(settings.domain)) : "";
+    for (const std::string& peer : settings.peers) xml << "<Peer Address=\"" << peer << port << "\"/>";
     xml << "</Peers>";
   }
-  xml << "<SPDPInterval>" << settings.lease_ms / 3 << "ms</SPDPInterval><LeaseDuration>" << settings.lease_ms
+  const vendors::AnnouncementPace pace = vendors::announcement_pace(settings.lease_ms, settings.peers);
+  xml << "<SPDPInterval>" << pace.period_ms << "ms</SPDPInterval><LeaseDuration>" << pace.lease_ms
       << "ms</LeaseDuration></Discovery><Internal>"
       // One receive thread, so that a scheduling policy set by the creating thread covers all of them.
       << "<MultipleReceiveThreads>false</MultipleReceiveThreads>"
-      // Fast DDS reads the key of what Cyclone disposes (endpoints that go, above all) from the key hash only.
+      // Fast DDS reads the key of what Cyclone disposes (endpoints that go, above all) from the key hash only; for
+      // samples it is turned off: WithoutKeyHashes.
       << "<GenerateKeyhash>true</GenerateKeyhash>"
       // A reliable writer being deleted waits this long for acknowledgements (default 1 s).
       << "<WriterLingerDuration>20ms</WriterLingerDuration>"
@@ -81,7 +89,7 @@ Result<Settings> settings_of(const eciton_participant_config& config) {
   if (!address) return address.error();
   Result<std::vector<std::string>> peers = vendors::peer_addresses(config.peers, config.peer_count);
   if (!peers) return peers.error();
-  return Settings{config.network_interface, *address, *peers, config.lease_ms};
+  return Settings{config.network_interface, *address, *peers, config.lease_ms, config.domain};
 }
 
 }  // namespace
@@ -110,6 +118,18 @@ Result<SharedDomain> SharedDomain::acquire(const eciton_participant_config& conf
   }
   domains[config.domain] = {*asked, entity, 1};
   return SharedDomain(config.domain);
+}
+
+WithoutKeyHashes::WithoutKeyHashes(const ddsi_sertype& registered)
+    : lock_(mutex()), domain_(static_cast<ddsi_domaingv*>(ddsrt_atomic_ldvoidp(&registered.gv))) {
+  eciton_cyclonedds_set_key_hashes(domain_, 0);
+}
+
+WithoutKeyHashes::~WithoutKeyHashes() { eciton_cyclonedds_set_key_hashes(domain_, 1); }
+
+std::mutex& WithoutKeyHashes::mutex() {
+  static std::mutex one;
+  return one;
 }
 
 SharedDomain::~SharedDomain() {

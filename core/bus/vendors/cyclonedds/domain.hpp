@@ -3,13 +3,34 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "core/base/result.hpp"
 #include "core/bus/plugin.h"
+#include "core/bus/vendors/cyclonedds/vendor.hpp"
 
 namespace eciton::bus::cyclonedds {
+
+/// Writers made while it lives send no key hashes. The domain's own writers, of participants and endpoints, need them
+/// (domain.cpp says why); a sample's key is its leading members, and each sample would be 24 bytes larger. The vendor
+/// has one setting for all, which a writer reads when it is made.
+class WithoutKeyHashes {
+ public:
+  /// Of the domain that the type is registered in.
+  explicit WithoutKeyHashes(const ddsi_sertype& registered);
+  ~WithoutKeyHashes();
+  WithoutKeyHashes(const WithoutKeyHashes&) = delete;
+  WithoutKeyHashes& operator=(const WithoutKeyHashes&) = delete;
+
+  /// Held while a domain's own writers are made.
+  static std::mutex& mutex();
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+  ddsi_domaingv* domain_;
+};
 
 class SharedDomain {
  public:

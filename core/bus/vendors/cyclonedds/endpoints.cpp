@@ -46,11 +46,16 @@ Qos make_qos(const eciton_qos& asked) {
   return qos;
 }
 
-Result<dds_entity_t> create_topic(const eciton_participant& participant, const char* name, const eciton_type& type) {
+struct CreatedTopic {
+  dds_entity_t topic;
+  const ddsi_sertype* registered;  // lives as long as the topic
+};
+
+Result<CreatedTopic> create_topic(const eciton_participant& participant, const char* name, const eciton_type& type) {
   ddsi_sertype* sertype = new_bytes_sertype(type);
   const dds_entity_t topic =
       dds_create_topic_sertype(participant.participant.get(), name, &sertype, nullptr, nullptr, nullptr);
-  if (topic > 0) return topic;
+  if (topic > 0) return CreatedTopic{topic, sertype};
   ddsi_sertype_unref(sertype);
   return Error{participant.label() + ": Cyclone DDS cannot create topic \"" + name + "\" of type " + type.name +
                ": " + dds_strretcode(-topic)};
@@ -98,11 +103,13 @@ Result<eciton_writer*> eciton_writer::create(eciton_participant& participant, co
   }
   std::unique_ptr<eciton_writer> created(new eciton_writer(type, qos.instances_max));
   if (!created->memory_.acquire(type, qos)) return cyclonedds::no_memory(participant, topic, qos);
-  const Result<dds_entity_t> on = cyclonedds::create_topic(participant, topic, type);
+  const auto on = cyclonedds::create_topic(participant, topic, type);
   if (!on) return on.error();
-  created->topic_.reset(*on);
-  const dds_entity_t writer =
-      dds_create_writer(participant.participant.get(), *on, cyclonedds::make_qos(qos).get(), nullptr);
+  created->topic_.reset(on->topic);
+  const dds_entity_t writer = [&] {
+    const cyclonedds::WithoutKeyHashes lean(*on->registered);
+    return dds_create_writer(participant.participant.get(), on->topic, cyclonedds::make_qos(qos).get(), nullptr);
+  }();
   if (writer < 0) return cyclonedds::cannot_create(participant, "writer", topic, writer);
   created->writer_.reset(writer);
   return created.release();
@@ -134,21 +141,21 @@ Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, co
   }
   std::unique_ptr<eciton_reader> created(new eciton_reader(type, qos, delivery));
   if (!created->memory_.acquire(type, qos)) return cyclonedds::no_memory(participant, topic, qos);
-  const Result<dds_entity_t> on = cyclonedds::create_topic(participant, topic, type);
+  const auto on = cyclonedds::create_topic(participant, topic, type);
   if (!on) return on.error();
-  created->topic_.reset(*on);
+  created->topic_.reset(on->topic);
   // Not by RESOURCE_LIMITS: a reliable reader that refuses a sample for want of instances has it offered again and
   // again by the receive thread, which delivers nothing else meanwhile. A filtered sample is gone.
   dds_topic_filter filter{};
   filter.mode = DDS_TOPIC_FILTER_SAMPLE_ARG;
   filter.f.sample_arg = &eciton_reader::admit;
   filter.arg = created.get();
-  dds_set_topic_filter_extended(*on, &filter);
+  dds_set_topic_filter_extended(on->topic, &filter);
   const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(dds_create_listener(created.get()),
                                                                             dds_delete_listener);
   dds_lset_data_available(listener.get(), &eciton_reader::on_data_available);
   const dds_entity_t reader =
-      dds_create_reader(participant.participant.get(), *on, cyclonedds::make_qos(qos).get(), listener.get());
+      dds_create_reader(participant.participant.get(), on->topic, cyclonedds::make_qos(qos).get(), listener.get());
   if (reader < 0) return cyclonedds::cannot_create(participant, "reader", topic, reader);
   created->reader_.reset(reader);
   return created.release();

@@ -21,7 +21,10 @@ Result<eciton_participant*> eciton_participant::create(const eciton_participant_
   std::unique_ptr<eciton_participant> created(new eciton_participant(std::move(domain).value(), config));
   dds_qos_t* qos = dds_create_qos();
   dds_qset_entity_name(qos, config.name);
-  const dds_entity_t participant = dds_create_participant(config.domain, qos, nullptr);
+  const dds_entity_t participant = [&] {
+    const std::lock_guard lock(eciton::bus::cyclonedds::WithoutKeyHashes::mutex());
+    return dds_create_participant(config.domain, qos, nullptr);
+  }();
   dds_delete_qos(qos);
   if (participant < 0) {
     return Error{"participant \"" + std::string(config.name) + "\": Cyclone DDS cannot join domain " +

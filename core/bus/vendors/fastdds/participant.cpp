@@ -11,6 +11,7 @@
 
 #include "core/bus/vendors/fastdds/bytes_type.hpp"
 #include "core/bus/vendors/fastdds/fast_discovery.hpp"
+#include "core/bus/vendors/fastdds/lean_transport.hpp"
 #include "core/bus/vendors/network.hpp"
 #include "core/bus/vendors/request.hpp"
 
@@ -33,17 +34,23 @@ rtps::Locator_t locator(const std::string& address) {
   return result;
 }
 
-void set_discovery(rtps::BuiltinAttributes& builtin, const std::string& address, std::uint32_t lease_ms,
-                   const std::vector<std::string>& peers) {
+void set_discovery(rtps::BuiltinAttributes& builtin, const std::string& address,
+                   const eciton_participant_config& config, const std::vector<std::string>& peers) {
   auto& discovery = builtin.discovery_config;
-  discovery.leaseDuration = milliseconds(lease_ms);
-  discovery.leaseDuration_announcementperiod = milliseconds(lease_ms / 3);
+  const auto pace = eciton::bus::vendors::announcement_pace(config.lease_ms, peers);
+  discovery.leaseDuration = milliseconds(pace.lease_ms);
+  discovery.leaseDuration_announcementperiod = milliseconds(pace.period_ms);
   // A peer that starts at the same moment misses the first announcement: repeat it soon.
   discovery.initial_announcements.count = 3;
   discovery.initial_announcements.period = milliseconds(30);
   if (peers.empty()) return;
   builtin.avoid_builtin_multicast = true;
-  builtin.metatrafficUnicastLocatorList.push_back(locator(address));  // one given: no multicast one is added
+  rtps::Locator_t own = locator(address);
+  // The vendor counts participants over all domains of a process, so that a radio would not be the first of its host.
+  if (eciton::bus::vendors::unicast_range(peers).announced_to == 1) {
+    own.port = static_cast<std::uint32_t>(eciton::bus::vendors::free_discovery_port(config.domain));
+  }
+  builtin.metatrafficUnicastLocatorList.push_back(own);  // one given: no multicast one is added
   for (const std::string& peer : peers) builtin.initialPeersList.push_back(locator(peer));
 }
 
@@ -57,9 +64,9 @@ fast::DomainParticipantQos participant_qos(const eciton_participant_config& conf
   udp->non_blocking_send = true;  // a full socket buffer loses the packet, it never holds up a step
   udp->sendBufferSize = kSocketBufferBytes;
   udp->receiveBufferSize = kSocketBufferBytes;
-  udp->maxInitialPeersRange = static_cast<std::uint32_t>(eciton::bus::vendors::unicast_participants(peers));
-  qos.transport().user_transports.push_back(udp);
-  set_discovery(qos.wire_protocol().builtin, address, config.lease_ms, peers);
+  udp->maxInitialPeersRange = static_cast<std::uint32_t>(eciton::bus::vendors::unicast_range(peers).announced_to);
+  qos.transport().user_transports.push_back(eciton::bus::fastdds::lean_transport(udp));
+  set_discovery(qos.wire_protocol().builtin, address, config, peers);
   return qos;
 }
 

@@ -14,7 +14,7 @@ fast::DataWriterQos writer_qos(const eciton_qos& asked) {
   eciton::bus::fastdds::set_common_qos(qos, asked, 0, 0);
   qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
   // At the default of 3 s a late joiner, or one that lost the last sample, waits as long.
-  qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(0, 50'000'000);
+  qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(0, 20'000'000);
   qos.reliable_writer_qos().times.nackResponseDelay = eprosima::fastrtps::Duration_t(0, 0);
   return qos;
 }
