@@ -25,7 +25,7 @@ fast::DataWriterQos writer_qos(const PeerOptions& options) {
   fast::DataWriterQos qos;
   bus::fastdds::set_common_qos(qos, asked(options), 0, 0);
   qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
-  qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 50'000'000);
+  qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 20'000'000);
   qos.reliable_writer_qos().times.nackResponseDelay = Duration_t(0, 0);
   return qos;
 }

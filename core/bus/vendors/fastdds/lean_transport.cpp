@@ -4,14 +4,13 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
+#include "core/bus/vendors/fastdds/lean_size.hpp"
+
 namespace eciton::bus::fastdds {
 namespace {
 
 namespace fast = eprosima::fastdds::rtps;
 namespace rtps = eprosima::fastrtps::rtps;
-
-constexpr std::uint32_t kMessageHeader = 20, kSubmessageHeader = 4, kStatistics = 56;
-constexpr std::uint8_t kStatisticsId = 0x80;
 
 class LeanTransport final : public fast::ChainingTransport {
  public:
@@ -43,14 +42,6 @@ struct LeanTransportDescriptor final : fast::ChainingTransportDescriptor {
 std::shared_ptr<fast::TransportDescriptorInterface> lean_transport(
     std::shared_ptr<fast::UDPv4TransportDescriptor> udp) {
   return std::make_shared<LeanTransportDescriptor>(std::move(udp));
-}
-
-std::uint32_t lean_size(const std::uint8_t* message, std::uint32_t size) {
-  constexpr std::uint32_t tail_size = kSubmessageHeader + kStatistics;
-  if (size < kMessageHeader + tail_size) return size;
-  const std::uint8_t* tail = message + size - tail_size;
-  const std::uint32_t length = (tail[1] & 1) != 0 ? tail[2] + 256u * tail[3] : tail[3] + 256u * tail[2];
-  return tail[0] == kStatisticsId && length == kStatistics ? size - tail_size : size;
 }
 
 }  // namespace eciton::bus::fastdds

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <cstdint>
 #include <memory>
 
 namespace eciton::bus::fastdds {
@@ -12,8 +11,5 @@ namespace eciton::bus::fastdds {
 /// What stands on top of `udp`.
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> lean_transport(
     std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp);
-
-/// The size of an RTPS message without a trailing submessage of statistics; as it is when there is none.
-std::uint32_t lean_size(const std::uint8_t* message, std::uint32_t size);
 
 }  // namespace eciton::bus::fastdds
