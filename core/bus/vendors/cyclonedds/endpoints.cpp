@@ -101,14 +101,18 @@ Result<eciton_writer*> eciton_writer::create(eciton_participant& participant, co
   if (const eciton::Status checked = eciton::bus::vendors::check_endpoint(topic, type, qos); !checked) {
     return checked.error();
   }
-  std::unique_ptr<eciton_writer> created(new eciton_writer(type, qos.instances_max));
+  std::unique_ptr<eciton_writer> created(new eciton_writer(type, qos));
   if (!created->memory_.acquire(type, qos)) return cyclonedds::no_memory(participant, topic, qos);
   const auto on = cyclonedds::create_topic(participant, topic, type);
   if (!on) return on.error();
   created->topic_.reset(on->topic);
   const dds_entity_t writer = [&] {
     const cyclonedds::WithoutKeyHashes lean(*on->registered);
-    return dds_create_writer(participant.participant.get(), on->topic, cyclonedds::make_qos(qos).get(), nullptr);
+    const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(dds_create_listener(created.get()),
+                                                                              dds_delete_listener);
+    dds_lset_publication_matched(listener.get(), &eciton_writer::on_matched);
+    return dds_create_writer(participant.participant.get(), on->topic, cyclonedds::make_qos(qos).get(),
+                             listener.get());
   }();
   if (writer < 0) return cyclonedds::cannot_create(participant, "writer", topic, writer);
   created->writer_.reset(writer);
@@ -123,14 +127,13 @@ bool eciton_writer::write(const std::uint8_t* cdr, std::uint32_t size) {
     const std::lock_guard<cyclonedds::InheritingMutex> lock(keys_mutex_);
     if (!keys_.admit(key)) return false;
   }
+  if (keeps_nothing_ && matched() == 0) return true;
   const cyclonedds::Bytes bytes{cdr, size};
   return dds_write(writer_.get(), &bytes) == DDS_RETCODE_OK;
 }
 
-std::uint32_t eciton_writer::matched() const {
-  dds_publication_matched_status_t status{};
-  dds_get_publication_matched_status(writer_.get(), &status);
-  return status.current_count;
+void eciton_writer::on_matched(dds_entity_t, const dds_publication_matched_status_t status, void* self) {
+  static_cast<eciton_writer*>(self)->matched_.store(status.current_count, std::memory_order_relaxed);
 }
 
 Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, const char* topic,

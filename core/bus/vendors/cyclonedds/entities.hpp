@@ -75,17 +75,21 @@ struct eciton_writer {
   static eciton::Result<eciton_writer*> create(eciton_participant& participant, const char* topic,
                                                const eciton_type& type, const eciton_qos& qos);
   bool write(const std::uint8_t* cdr, std::uint32_t size);
-  std::uint32_t matched() const;
+  std::uint32_t matched() const { return matched_.load(std::memory_order_relaxed); }
 
  private:
-  eciton_writer(const eciton_type& type, std::uint32_t keys_max) : type_(type), keys_(keys_max) {}
+  eciton_writer(const eciton_type& type, const eciton_qos& qos)
+      : type_(type), keeps_nothing_(qos.reliable == 0 && qos.transient_local == 0), keys_(qos.instances_max) {}
+  static void on_matched(dds_entity_t writer, const dds_publication_matched_status_t status, void* self);
 
   eciton_type type_;
+  bool keeps_nothing_;  // for whoever is not there yet
+  std::atomic<std::uint32_t> matched_{0};
   eciton::bus::cyclonedds::InheritingMutex keys_mutex_;
   eciton::bus::vendors::InstanceSet keys_;
   eciton::bus::cyclonedds::Reservation memory_;
   eciton::bus::cyclonedds::Entity topic_;
-  eciton::bus::cyclonedds::Entity writer_;
+  eciton::bus::cyclonedds::Entity writer_;  // last: deleted first, and with it the last call of on_matched
 };
 
 struct eciton_reader {

@@ -51,10 +51,12 @@ struct eciton_writer final : eprosima::fastdds::dds::DataWriterListener {
                               const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
 
  private:
-  eciton_writer(eciton_participant& participant, const eciton_type& type) : participant_(participant), type_(type) {}
+  eciton_writer(eciton_participant& participant, const eciton_type& type, const eciton_qos& qos)
+      : participant_(participant), type_(type), keeps_nothing_(qos.reliable == 0 && qos.transient_local == 0) {}
 
   eciton_participant& participant_;
   eciton_type type_;
+  bool keeps_nothing_;  // for whoever is not there yet
   std::atomic<std::uint32_t> matched_{0};
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
 };

@@ -28,7 +28,7 @@ Result<eciton_writer*> eciton_writer::create(eciton_participant& participant, co
   }
   const Result<fast::Topic*> on = participant.topic(topic, type);
   if (!on) return on.error();
-  std::unique_ptr<eciton_writer> created(new eciton_writer(participant, type));
+  std::unique_ptr<eciton_writer> created(new eciton_writer(participant, type, qos));
   created->writer_ = participant.publisher->create_datawriter(*on, writer_qos(qos), created.get(),
                                                               fast::StatusMask::publication_matched());
   if (created->writer_ == nullptr) {
@@ -46,6 +46,7 @@ bool eciton_writer::write(const std::uint8_t* cdr, std::uint32_t size) {
   std::uint8_t hash[16];
   if (!eciton::bus::vendors::well_formed(type_, cdr, size)) return false;
   if (!eciton::bus::vendors::key_hash_of(type_, cdr, size, false, hash)) return false;
+  if (keeps_nothing_ && matched() == 0) return true;
   return writer_->write(&bytes);
 }
 
