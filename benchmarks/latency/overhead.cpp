@@ -1,4 +1,4 @@
-// Starts bench_overhead and reads its one line.
+// Starts eciton-bench-overhead and reads its one line.
 #include "benchmarks/latency/overhead.hpp"
 
 #include <cstdio>
@@ -24,7 +24,7 @@ Overhead measure_overhead(const LatencyOptions& options, const runtime::StopFlag
   }
   const Result<std::string> line = started->hear(monotonic_now() + std::chrono::seconds(5), stop);
   if (!line) overhead.trouble = line.error().message;
-  if (line && !parse_overhead(*line, overhead)) overhead.trouble = "bench_overhead said '" + *line + "'";
+  if (line && !parse_overhead(*line, overhead)) overhead.trouble = "eciton-bench-overhead said '" + *line + "'";
   return overhead;
 }
 

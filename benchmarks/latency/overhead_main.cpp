@@ -90,7 +90,7 @@ int main() {
   try {
     return eciton::bench::measure();
   } catch (const eciton::BadInput& bad) {
-    std::fprintf(stderr, "bench_overhead: %s\n", bad.error.message.c_str());
+    std::fprintf(stderr, "eciton-bench-overhead: %s\n", bad.error.message.c_str());
     return 2;
   }
 }

@@ -48,7 +48,7 @@ class Programs {
   }
 
   bool exists(const std::string& transport) const { return fs::exists(path(transport)); }
-  fs::path path(const std::string& transport) const { return directory_ / ("bench_peer_" + transport); }
+  fs::path path(const std::string& transport) const { return directory_ / ("eciton-bench-peer-" + transport); }
 
   ProgramSpec peer(const std::string& transport, Role role, const std::vector<std::string>& arguments,
                    std::uint32_t domain) const {
@@ -68,7 +68,7 @@ class Programs {
 
   ProgramSpec overhead() const {
     ProgramSpec spec;
-    spec.path = directory_ / "bench_overhead";
+    spec.path = directory_ / "eciton-bench-overhead";
     spec.environment = environment_;
     const fs::path plugins = own_directory().parent_path() / "lib";
     spec.environment["ECITON_PLUGIN_PATH"] = (plugins / "bench").string() + ":" + plugins.string();

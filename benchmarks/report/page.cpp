@@ -73,21 +73,21 @@ std::string notes_of(const Result& result) {
 
 std::string to_html(const Result& result) {
   std::string text = head(result);
-  if (!result.bars.empty()) text += "<h2>Side by side, 95 % confidence</h2>\n";
+  if (!result.bars.empty()) text += "<h2 id=\"side-by-side\">Side by side, 95 % confidence</h2>\n";
   for (const Bars& bars : result.bars) text += card(bars.title, bars_chart(bars));
   for (const Curves& curves : result.curves) text += card(curves.title, curves_chart(curves));
-  if (!result.tables.empty()) text += "<h2>Figures</h2>\n";
+  if (!result.tables.empty()) text += "<h2 id=\"figures\">Figures</h2>\n";
   for (const Table& table : result.tables) text += table_card(table);
   text += notes_of(result);
   const auto charts = charts_of(result);
-  if (!charts.empty()) text += "<h2>Distributions</h2>\n";
+  if (!charts.empty()) text += "<h2 id=\"distributions\">Distributions</h2>\n";
   for (const auto& [name, samples] : charts) text += card(name, distribution_chart(samples));
   std::string over_time;
   for (const auto& [name, samples] : charts) {
     const std::string chart = time_chart(samples);
     if (!chart.empty()) over_time += card(name, chart);
   }
-  if (!over_time.empty()) text += "<h2>Over time</h2>\n" + over_time;
+  if (!over_time.empty()) text += "<h2 id=\"over-time\">Over time</h2>\n" + over_time;
   std::string config;
   add_config(config, "", result.config);
   if (!config.empty()) text += "<h2>What was run</h2>\n" + card("", "<dl>\n" + config + "</dl>\n");

@@ -92,7 +92,7 @@ void add_bench_latency(CLI::App& bench, Run& run_chosen) {
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
   verb.add_option("--programs", measure.programs,
-                  "directory of the bench_peer_* programs (default: beside this one)");
+                  "directory of the eciton-bench-peer-* programs (default: beside this one)");
   verb.add_option("--seed", measure.seed, "of the confidence intervals")->capture_default_str();
   add_report_options(verb, options->files);
   on_chosen(verb, run_chosen, [options, &verb] { return run(*options, verb); });

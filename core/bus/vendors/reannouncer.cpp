@@ -1,6 +1,7 @@
 // The schedule starts anew with every discovery, so a fleet that starts together costs few announcements.
 #include "core/bus/vendors/reannouncer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -8,8 +9,9 @@ namespace eciton::bus::vendors {
 namespace {
 
 using std::chrono::milliseconds;
-// The last for a machine so busy that the new participant's threads wait their turn.
-constexpr std::array<milliseconds, 2> kAfter = {milliseconds(25), milliseconds(200)};
+// The second for a machine so busy that the new participant's threads wait their turn.
+constexpr std::array kAfter = {milliseconds(25), milliseconds(200), milliseconds(1000), milliseconds(3000)};
+constexpr std::size_t kAfterDiscovery = 2;
 
 }  // namespace
 
@@ -18,12 +20,15 @@ Reannouncer::Reannouncer(std::function<void()> announce)
 
 Reannouncer::~Reannouncer() { stop(); }
 
-void Reannouncer::discovered() {
+void Reannouncer::started() { repeat(kAfter.size()); }
+void Reannouncer::discovered() { repeat(kAfterDiscovery); }
+
+void Reannouncer::repeat(std::size_t times) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    discovered_at_ = std::chrono::steady_clock::now();
+    since_ = std::chrono::steady_clock::now();
+    times_ = std::max(times, announced_ < times_ ? times_ : 0);
     announced_ = 0;
-    pending_ = true;
   }
   changed_.notify_all();
 }
@@ -40,12 +45,12 @@ void Reannouncer::stop() {
 void Reannouncer::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stop_) {
-    if (!pending_) {
+    if (announced_ >= times_) {
       changed_.wait(lock);
-    } else if (const auto due = discovered_at_ + kAfter[announced_]; std::chrono::steady_clock::now() < due) {
+    } else if (const auto due = since_ + kAfter[announced_]; std::chrono::steady_clock::now() < due) {
       changed_.wait_until(lock, due);
     } else {
-      pending_ = ++announced_ < kAfter.size();
+      ++announced_;
       lock.unlock();
       announce_();
       lock.lock();

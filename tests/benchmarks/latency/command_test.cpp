@@ -26,15 +26,15 @@ class Peers {
   Peers& operator=(const Peers&) = delete;
 
   static fs::path built(const std::string& transport) {
-    return fs::path(ECITON_PROGRAM).parent_path() / ("bench_peer_" + transport);
+    return fs::path(ECITON_PROGRAM).parent_path() / ("eciton-bench-peer-" + transport);
   }
   /// UDP stands for ours where DDS is not the point: it takes the same words and is there at once.
   Peers& link(const std::string& transport, const std::string& real) {
-    fs::create_symlink(built(real), directory_ / ("bench_peer_" + transport));
+    fs::create_symlink(built(real), directory_ / ("eciton-bench-peer-" + transport));
     return *this;
   }
   Peers& script(const std::string& transport, const std::string& text) {
-    const fs::path file = directory_ / ("bench_peer_" + transport);
+    const fs::path file = directory_ / ("eciton-bench-peer-" + transport);
     std::ofstream(file) << "#!/bin/sh\n" << text << "\n";
     fs::permissions(file, fs::perms::owner_all);
     return *this;
@@ -84,7 +84,7 @@ TEST(BenchLatencyTest, NamesAWrongWordAndWhatWouldBeRight) {
       {{"--interface", "eth99"}, "--over loopback: network interface \"eth99\" does not exist"},
       {{"--hosts", "a"}, "--hosts: give two"},
       {{"--hosts", "a,b"}, "--hosts: a: there is no network namespace /run/netns/a"},
-      {{"--programs", "/nowhere"}, "/nowhere/bench_peer_eciton is not there"},
+      {{"--programs", "/nowhere"}, "/nowhere/eciton-bench-peer-eciton is not there"},
       {{"--json", "/nowhere/x.json"}, "--json /nowhere/x.json: cannot be written"},
       {{"--sice", "64"}, "did you mean --sizes?"},
   };
@@ -126,7 +126,7 @@ TEST(BenchLatencyTest, GoesOnWithoutABaselineThatIsMissing) {
   without_path.insert(without_path.begin(), {"/usr/bin/env", "PATH=/nowhere"});
   const Ended ended = run(without_path);
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_NE(ended.out.find("bench_peer_zeromq is not there; it is built where libzmq3-dev is installed"),
+  EXPECT_NE(ended.out.find("eciton-bench-peer-zeromq is not there; it is built where libzmq3-dev is installed"),
             std::string::npos)
       << ended.out;
   EXPECT_NE(ended.out.find("it is built where liblcm-dev is installed"), std::string::npos);
@@ -140,7 +140,7 @@ TEST(BenchLatencyTest, APeerThatNeverAppearsCostsItsLaneOnly) {
   peers.script("eciton", echo_that("exec sleep 60")).link("cyclonedds", "udp");
   const Ended ended = run(brief(peers, {"--baselines", "native"}));
   EXPECT_EQ(ended.status, 1) << ended.err;
-  EXPECT_NE(ended.out.find("ours on Cyclone DDS, inline: echo: bench_peer_eciton did not answer in time"),
+  EXPECT_NE(ended.out.find("ours on Cyclone DDS, inline: echo: eciton-bench-peer-eciton did not answer in time"),
             std::string::npos)
       << ended.out;
   EXPECT_NE(ended.out.find("round_trip.native.cyclonedds.inline.64 "), std::string::npos) << ended.out;
@@ -160,7 +160,7 @@ TEST(BenchLatencyTest, APeerThatDiesMidRunLeavesWhatItGave) {
   peers.script("eciton", echo_that("(sleep 3; kill -9 $$) >/dev/null 2>&1 &")).link("cyclonedds", "udp");
   const Ended ended = run(brief(peers, {"--baselines", "native"}, "5"), seconds(60));
   EXPECT_EQ(ended.status, 1) << ended.err;
-  EXPECT_NE(ended.out.find("echo: bench_peer_eciton was ended by signal 9"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("echo: eciton-bench-peer-eciton was ended by signal 9"), std::string::npos) << ended.out;
   EXPECT_NE(ended.out.find("round_trip.ours.cyclonedds.inline.64 (partial)"), std::string::npos) << ended.out;
   EXPECT_NE(ended.out.find("ours on Cyclone DDS, inline / native Cyclone DDS, inline, 64 B"), std::string::npos);
 }

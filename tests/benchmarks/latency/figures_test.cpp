@@ -159,10 +159,11 @@ TEST(FiguresTest, AnInterruptedRunIsToldAsFarAsItCame) {
 TEST(FiguresTest, NothingMeasuredIsNoCrash) {
   Made made;
   made.plan.cells = {{64, 1000, "sensor", "loopback", true}};
-  made.overhead.trouble = "bench_overhead ended with status 1";
+  made.overhead.trouble = "eciton-bench-overhead ended with status 1";
   const Result result = made.result();
   EXPECT_TRUE(result.metrics.empty());
-  EXPECT_EQ(result.notes.front(), "the framework's own code was not measured: bench_overhead ended with status 1");
+  EXPECT_EQ(result.notes.front(),
+            "the framework's own code was not measured: eciton-bench-overhead ended with status 1");
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ Result<eciton_participant*> eciton_participant::create(const eciton_participant_
     return Error{created->label() + ": Cyclone DDS does not list participants: " + dds_strretcode(-discovery)};
   }
   created->discovery_.reset(discovery);
+  created->reannouncer_.started();
   return created.release();
 }
 

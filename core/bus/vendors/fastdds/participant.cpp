@@ -103,6 +103,8 @@ Result<eciton_participant*> eciton_participant::create(const eciton_participant_
   if (created->publisher == nullptr || created->subscriber == nullptr) {
     return Error{created->label() + ": Fast DDS cannot create a publisher and a subscriber"};
   }
+  created->announced_ = created->participant;
+  created->reannouncer_.started();
   return created.release();
 }
 
