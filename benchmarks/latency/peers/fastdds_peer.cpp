@@ -1,12 +1,17 @@
 // Native Fast DDS: its C++ API and the types that fastddsgen makes, under a participant that the plugin's own code
-// creates, so that transports, threads and discovery are the same by construction; the endpoints' QoS is the
-// plugin's. inline: a listener on the reader. wake: a WaitSet with the reader's status condition.
+// creates, and endpoints of the QoS that it gives, so that all settings are the same by construction. inline: a
+// listener on the reader. wake: a WaitSet with the reader's status condition.
 #include <fastdds/dds/core/condition/GuardCondition.hpp>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "benchmarks/latency/peers/transport.hpp"
 #include "core/base/wall_clock.hpp"
-#include "core/bus/vendors/fastdds/endpoints.hpp"
+#include "core/bus/vendors/fastdds/participant.hpp"
+#include "core/bus/vendors/fastdds/qos.hpp"
 
 #include "bench_fastdds/payloadPubSubTypes.h"
 
@@ -18,26 +23,6 @@ using eprosima::fastrtps::Duration_t;
 
 eciton_qos asked(const PeerOptions& options) {
   return {.reliable = options.reliable, .transient_local = 0, .depth = 1, .instances_max = 64};
-}
-
-// What core/bus/vendors/fastdds/writer.cpp and reader.cpp set beside the common part.
-fast::DataWriterQos writer_qos(const PeerOptions& options) {
-  fast::DataWriterQos qos;
-  bus::fastdds::set_common_qos(qos, asked(options), 0, 0);
-  qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
-  qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 20'000'000);
-  qos.reliable_writer_qos().times.nackResponseDelay = Duration_t(0, 0);
-  return qos;
-}
-
-fast::DataReaderQos reader_qos(const PeerOptions& options) {
-  constexpr int loans_max = 32;
-  fast::DataReaderQos qos;
-  bus::fastdds::set_common_qos(qos, asked(options), 1, loans_max + 224);
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 0);
-  qos.reader_resource_limits().max_samples_per_read = loans_max;
-  qos.reader_resource_limits().sample_infos_allocation.initial = loans_max;
-  return qos;
 }
 
 class Lane : public fast::DataReaderListener {
@@ -67,10 +52,10 @@ class LaneOf final : public Lane {
       return in.participant->create_topic(topic_name(options, of, bytes), type.get_type_name(), fast::TopicQos());
     };
     const bool listens = options.delivery == Delivery::inlined;
-    writer = in.publisher->create_datawriter(topic(options.role), writer_qos(options));
-    reader =
-        in.subscriber->create_datareader(topic(other(options.role)), reader_qos(options), listens ? this : nullptr,
-                                         listens ? fast::StatusMask::data_available() : fast::StatusMask::none());
+    writer = in.publisher->create_datawriter(topic(options.role), bus::fastdds::writer_qos(asked(options)));
+    reader = in.subscriber->create_datareader(
+        topic(other(options.role)), bus::fastdds::reader_qos(asked(options)), listens ? this : nullptr,
+        listens ? fast::StatusMask::data_available() : fast::StatusMask::none());
     if (writer == nullptr || reader == nullptr) throw BadInput{{"Fast DDS cannot create a writer and a reader"}};
     out_.module_id(1);
     fill(out_.values());

@@ -1,5 +1,4 @@
-// Writer and reader of bytes on Fast DDS, and the QoS they share. Both are their own listeners, for counting
-// matched peers without a lock.
+// Writer and reader of bytes on Fast DDS. Both are their own listeners, for counting matched peers without a lock.
 #pragma once
 
 #include <atomic>
@@ -12,32 +11,6 @@
 #include "core/base/result.hpp"
 #include "core/bus/vendors/fastdds/participant.hpp"
 #include "core/bus/vendors/sequence_gaps.hpp"
-
-namespace eciton::bus::fastdds {
-
-/// What a writer and a reader are told alike.
-template <class EndpointQos>
-void set_common_qos(EndpointQos& qos, const eciton_qos& asked, std::uint32_t instances_spare,
-                    std::uint32_t samples_spare) {
-  namespace fast = eprosima::fastdds::dds;
-  qos.reliability().kind = asked.reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
-  // KEEP_LAST overwrites and so never waits for a slow reader; this bounds the rest, were there any.
-  qos.reliability().max_blocking_time = eprosima::fastrtps::Duration_t(0, 1'000'000);
-  qos.durability().kind =
-      asked.transient_local ? fast::TRANSIENT_LOCAL_DURABILITY_QOS : fast::VOLATILE_DURABILITY_QOS;
-  qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = static_cast<std::int32_t>(asked.depth);
-  const std::uint32_t instances = asked.instances_max + instances_spare;
-  const std::uint32_t samples = asked.depth * instances + samples_spare;
-  qos.resource_limits().max_instances = static_cast<std::int32_t>(instances);
-  qos.resource_limits().max_samples_per_instance = static_cast<std::int32_t>(asked.depth);
-  qos.resource_limits().max_samples = static_cast<std::int32_t>(samples);
-  qos.resource_limits().allocated_samples = static_cast<std::int32_t>(samples < 64 ? samples : 64);
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
-  qos.data_sharing().off();
-}
-
-}  // namespace eciton::bus::fastdds
 
 struct eciton_writer final : eprosima::fastdds::dds::DataWriterListener {
   static eciton::Result<eciton_writer*> create(eciton_participant& participant, const char* topic,

@@ -5,37 +5,24 @@
 
 #include "core/bus/vendors/fastdds/bytes_type.hpp"
 #include "core/bus/vendors/fastdds/endpoints.hpp"
+#include "core/bus/vendors/fastdds/qos.hpp"
 #include "core/bus/vendors/request.hpp"
 
 namespace fast = eprosima::fastdds::dds;
 using eciton::Error;
 using eciton::Result;
 using eciton::bus::fastdds::Bytes;
+using eciton::bus::fastdds::kLoansMax;
 
 namespace {
 
 FASTDDS_SEQUENCE(BytesSeq, Bytes);
-
-// Samples lent at once. Each holds a payload of the history's pool, which therefore has as many to spare.
-constexpr std::uint32_t kLoansMax = 32;
-// A reliable reader refuses a sample when the gap before it does not fit the history: leave room for a gap that a
-// burst of losses makes. Payloads are allocated only when used.
-constexpr std::uint32_t kSamplesSpare = kLoansMax + 224;
 
 eciton::bus::vendors::WriterGuid guid_of(const eprosima::fastrtps::rtps::SampleIdentity& sample) {
   eciton::bus::vendors::WriterGuid guid;
   std::copy_n(sample.writer_guid().guidPrefix.value, 12, guid.begin());
   std::copy_n(sample.writer_guid().entityId.value, 4, guid.begin() + 12);
   return guid;
-}
-
-fast::DataReaderQos reader_qos(const eciton_qos& asked) {
-  fast::DataReaderQos qos;
-  eciton::bus::fastdds::set_common_qos(qos, asked, 1, kSamplesSpare);
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = eprosima::fastrtps::Duration_t(0, 0);
-  qos.reader_resource_limits().max_samples_per_read = static_cast<std::int32_t>(kLoansMax);
-  qos.reader_resource_limits().sample_infos_allocation.initial = kLoansMax;
-  return qos;
 }
 
 }  // namespace
@@ -50,7 +37,7 @@ Result<eciton_reader*> eciton_reader::create(eciton_participant& participant, co
   if (!on) return on.error();
   std::unique_ptr<eciton_reader> created(new eciton_reader(participant, type, qos, delivery));
   created->reader_ = participant.subscriber->create_datareader(
-      *on, reader_qos(qos), created.get(),
+      *on, eciton::bus::fastdds::reader_qos(qos), created.get(),
       fast::StatusMask::data_available() << fast::StatusMask::subscription_matched()
                                          << fast::StatusMask::sample_lost() << fast::StatusMask::sample_rejected());
   if (created->reader_ == nullptr) {

@@ -1,25 +1,12 @@
 // Writes bytes with Fast DDS, synchronously: the calling thread sends, so that no second thread adds jitter.
 #include "core/bus/vendors/fastdds/bytes_type.hpp"
 #include "core/bus/vendors/fastdds/endpoints.hpp"
+#include "core/bus/vendors/fastdds/qos.hpp"
 #include "core/bus/vendors/request.hpp"
 
 namespace fast = eprosima::fastdds::dds;
 using eciton::Error;
 using eciton::Result;
-
-namespace {
-
-fast::DataWriterQos writer_qos(const eciton_qos& asked) {
-  fast::DataWriterQos qos;
-  eciton::bus::fastdds::set_common_qos(qos, asked, 0, 0);
-  qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
-  // At the default of 3 s a late joiner, or one that lost the last sample, waits as long.
-  qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(0, 20'000'000);
-  qos.reliable_writer_qos().times.nackResponseDelay = eprosima::fastrtps::Duration_t(0, 0);
-  return qos;
-}
-
-}  // namespace
 
 Result<eciton_writer*> eciton_writer::create(eciton_participant& participant, const char* topic,
                                              const eciton_type& type, const eciton_qos& qos) {
@@ -29,8 +16,8 @@ Result<eciton_writer*> eciton_writer::create(eciton_participant& participant, co
   const Result<fast::Topic*> on = participant.topic(topic, type);
   if (!on) return on.error();
   std::unique_ptr<eciton_writer> created(new eciton_writer(participant, type, qos));
-  created->writer_ = participant.publisher->create_datawriter(*on, writer_qos(qos), created.get(),
-                                                              fast::StatusMask::publication_matched());
+  created->writer_ = participant.publisher->create_datawriter(*on, eciton::bus::fastdds::writer_qos(qos),
+                                                              created.get(), fast::StatusMask::publication_matched());
   if (created->writer_ == nullptr) {
     return Error{participant.label() + ": Fast DDS cannot create a writer of topic \"" + topic + "\""};
   }
