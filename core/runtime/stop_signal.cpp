@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstdint>
+#include <thread>
 
 #include "core/base/contract.hpp"
 #include "core/base/result.hpp"
@@ -35,9 +36,11 @@ void StopFlag::request() noexcept {
   requested_.store(true, std::memory_order_release);
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = ::write(fd_, &one, sizeof one);
+  requesting_.fetch_add(1);
   for (const auto& each : wakers_) {
     if (bus::Waker* waker = each.load()) waker->signal();
   }
+  requesting_.fetch_sub(1);
 }
 
 void StopFlag::also_wake(bus::Waker& waker) const {
@@ -51,8 +54,10 @@ void StopFlag::also_wake(bus::Waker& waker) const {
 void StopFlag::no_longer_wake(bus::Waker& waker) const noexcept {
   for (auto& each : wakers_) {
     bus::Waker* this_one = &waker;
-    if (each.compare_exchange_strong(this_one, nullptr)) return;
+    if (each.compare_exchange_strong(this_one, nullptr)) break;
   }
+  // A request under way may have seen it before; without a lock, since a signal handler may be the one that requests.
+  while (requesting_.load() != 0) std::this_thread::yield();
 }
 
 StopOnSignals::StopOnSignals(StopFlag& flag) {

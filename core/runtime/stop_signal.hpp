@@ -25,10 +25,12 @@ class StopFlag {
 
   /// The request signals this waker too, until it is taken back; at most eight at a time.
   void also_wake(bus::Waker& waker) const;
+  /// After it returns the waker may be destroyed.
   void no_longer_wake(bus::Waker& waker) const noexcept;
 
  private:
   std::atomic<bool> requested_{false};
+  std::atomic<int> requesting_{0};
   int fd_;
   mutable std::array<std::atomic<bus::Waker*>, 8> wakers_{};
 };
