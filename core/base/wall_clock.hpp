@@ -2,6 +2,7 @@
 // and never includes this.
 #pragma once
 
+#include <algorithm>
 #include <ctime>
 
 #include "core/base/time.hpp"
@@ -23,5 +24,11 @@ inline TimePoint wall_now() noexcept { return from_ns(wall_clock_detail::read_ns
 
 /// CLOCK_MONOTONIC since its own epoch: for periods and waits. Real-time safe.
 inline Duration monotonic_now() noexcept { return Duration{wall_clock_detail::read_ns(CLOCK_MONOTONIC)}; }
+
+/// For calls of the system that wait: for so long, or until that instant of a clock. Negative: zero.
+constexpr timespec to_timespec(Duration d) noexcept {
+  const Duration::rep ns = std::max<Duration::rep>(d.count(), 0);
+  return {static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+}
 
 }  // namespace eciton

@@ -7,7 +7,6 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <ctime>
 
@@ -49,8 +48,7 @@ void Waker::signal() noexcept {
 }
 
 bool Waker::wait_until(Duration monotonic) noexcept {
-  const auto ns = std::max<Duration::rep>(monotonic.count(), 0);
-  const timespec until{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+  const timespec until = to_timespec(monotonic);
   std::uint32_t expected = idle;
   if (state_.compare_exchange_strong(expected, sleeping)) {
     while (state_.load() == sleeping && futex_wait(state_, sleeping, until)) {

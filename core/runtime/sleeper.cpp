@@ -1,7 +1,6 @@
 // The waker, which the stop flag signals too.
 #include "core/runtime/sleeper.hpp"
 
-#include <algorithm>
 #include <ctime>
 
 #include "core/base/wall_clock.hpp"
@@ -17,8 +16,7 @@ void Sleeper::until(Duration monotonic) noexcept {
 }
 
 void Sleeper::until_undisturbed(Duration monotonic) noexcept {
-  const auto ns = std::max<Duration::rep>(monotonic.count(), 0);
-  const timespec at{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+  const timespec at = to_timespec(monotonic);
   if (!stop_.requested()) ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr);
 }
 

@@ -5,6 +5,8 @@
 #include <csignal>
 #include <ctime>
 
+#include "core/base/wall_clock.hpp"
+
 namespace eciton::deploy {
 namespace {
 
@@ -142,8 +144,7 @@ bool Supervisor::all_running() const {
 }
 
 void wait_for(std::vector<pollfd>& descriptors, Duration timeout) {
-  const auto ns = std::max<Duration::rep>(timeout.count(), 0);
-  const timespec t{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+  const timespec t = to_timespec(timeout);
   ::ppoll(descriptors.data(), descriptors.size(), &t, nullptr);
 }
 
