@@ -40,13 +40,17 @@ inline constexpr Topic<msg::LatchState> latch_state{"latch_state", QosClass::sta
 
 // Goals
 inline constexpr Topic<msg::FlightGoal> flight_goal{"flight_goal", QosClass::command, Scope::swarm};
+inline constexpr Topic<msg::PathGoal> path_goal{"path_goal", QosClass::command, Scope::swarm};
 inline constexpr Topic<msg::MorphGoal> morph_goal{"morph_goal", QosClass::command, Scope::swarm};
+inline constexpr Topic<msg::ContactGoal> contact_goal{"contact_goal", QosClass::command, Scope::swarm};
 inline constexpr Topic<msg::DockGoal> dock_goal{"dock_goal", QosClass::command, Scope::swarm};
 inline constexpr Topic<msg::ModeRequest> mode_request{"mode_request", QosClass::command, Scope::swarm};
 inline constexpr Topic<msg::GoalStatus> goal_status{"goal_status", QosClass::state, Scope::swarm};
 
 // Docking and chains
 inline constexpr Topic<msg::DockingState> docking_state{"docking_state", QosClass::state, Scope::swarm};
+inline constexpr Topic<msg::DockingReference> docking_reference{"docking_reference", QosClass::sensor, Scope::swarm,
+                                                                50ms, 500ms};
 inline constexpr Topic<msg::LinkClaim> link_claim{"link_claim", QosClass::state, Scope::swarm};
 inline constexpr Topic<msg::ChainView> chain_view{"chain_view", QosClass::state, Scope::swarm};
 
@@ -63,11 +67,12 @@ inline constexpr Topic<msg::TruthPose> truth_pose{"truth_pose", QosClass::sensor
 inline constexpr Topic<msg::TruthContact> truth_contact{"truth_contact", QosClass::sensor, Scope::module};
 
 inline constexpr auto all =
-    std::tuple{clock,          clock_ack,     imu,         pose_measurement, module_state, external_wrench,
-               contact_wrench, rotor_command, rotor_state, joint_command,    joint_state,  latch_command,
-               latch_state,    flight_goal,   morph_goal,  dock_goal,        mode_request, goal_status,
-               docking_state,  link_claim,    chain_view,  beacon,           module_info,  radio_state,
-               heartbeat,      event,         fault,       truth_pose,       truth_contact};
+    std::tuple{clock,          clock_ack,     imu,           pose_measurement,  module_state, external_wrench,
+               contact_wrench, rotor_command, rotor_state,   joint_command,     joint_state,  latch_command,
+               latch_state,    flight_goal,   path_goal,     morph_goal,        contact_goal, dock_goal,
+               mode_request,   goal_status,   docking_state, docking_reference, link_claim,   chain_view,
+               beacon,         module_info,   radio_state,   heartbeat,         event,        fault,
+               truth_pose,     truth_contact};
 
 /// Calls `visit(topic)` for each topic.
 template <class Visit>

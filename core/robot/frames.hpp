@@ -74,4 +74,9 @@ inline Vector3 log_so3(const Matrix3& R) {
   return a.angle() * a.axis();
 }
 
+/// The heading of an attitude without its roll and pitch.
+inline Matrix3 upright(const Matrix3& R) {
+  return Eigen::AngleAxisd(std::atan2(R(1, 0), R(0, 0)), Vector3::UnitZ()).toRotationMatrix();
+}
+
 }  // namespace eciton::robot

@@ -182,7 +182,8 @@ PoseSpline::Point PoseSpline::curve(double u) const {
 }
 
 PoseReference PoseSpline::at(double t_s) const {
-  const double whole = count_ > 0 ? u_[count_ - 1] : 0;
+  if (count_ == 0) return {};
+  const double whole = u_[count_ - 1];
   const ScalarMotion s = progress_.at(t_s - start_s_);
   const Point c = curve(s.position * whole);
   const double u_t = s.velocity * whole, u_tt = s.acceleration * whole;

@@ -89,7 +89,7 @@ class PoseMotion {
   double turn_unit_ = 1;
 };
 
-inline constexpr std::size_t waypoints_max = 16;
+inline constexpr std::size_t waypoints_max = 33;
 
 /// Through waypoints from rest to rest: position and orientation each a natural cubic spline, parametrised
 /// by the length (or turn) between waypoints, driven along by a speed profile. Attitudes together must stay
@@ -104,6 +104,13 @@ class PoseSpline {
   double start_s() const { return start_s_; }
   double duration_s() const { return progress_.duration_s(); }
   bool finished(double t_s) const { return t_s >= start_s_ + duration_s(); }
+
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    for (auto& x : self.x_) v(x);
+    for (auto& x_uu : self.x_uu_) v(x_uu);
+    v(self.u_, self.count_, self.R_from_, self.start_s_, self.progress_);
+  }
 
  private:
   struct Point {

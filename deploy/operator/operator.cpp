@@ -3,10 +3,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <type_traits>
 
 namespace eciton::deploy {
 namespace {
@@ -41,7 +41,9 @@ Operator::Operator(bus::Participant& swarm, const OperatorConfig& config)
       next_correlation_id_(config.first_correlation_id != 0 ? config.first_correlation_id : drawn_correlation_id()),
       mode_request_(swarm.create_writer(topics::mode_request)),
       flight_goal_(swarm.create_writer(topics::flight_goal)),
+      path_goal_(swarm.create_writer(topics::path_goal)),
       morph_goal_(swarm.create_writer(topics::morph_goal)),
+      contact_goal_(swarm.create_writer(topics::contact_goal)),
       dock_goal_(swarm.create_writer(topics::dock_goal)),
       goal_status_(swarm.create_reader(topics::goal_status)) {}
 
@@ -79,6 +81,18 @@ std::uint64_t Operator::go_to(std::uint32_t id, const std::array<double, 3>& p_W
   return add(msg::GoalKind::flight, words("goto", id), goal);
 }
 
+std::uint64_t Operator::fly_path(std::uint32_t id, std::span<const msg::Waypoint> waypoints, double speed_m_s) {
+  msg::PathGoal goal{.module_id = id, .speed_m_s = speed_m_s};
+  const bool fits = std::all_of(waypoints.begin(), waypoints.end(),
+                                [&](const msg::Waypoint& waypoint) { return goal.waypoints.push_back(waypoint); });
+  const std::uint64_t correlation_id = add(msg::GoalKind::flight, words("path", id), goal);
+  if (!fits) {
+    refuse(correlation_id, std::to_string(waypoints.size()) + " waypoints; a path has at most " +
+                               std::to_string(decltype(goal.waypoints)::bound()));
+  }
+  return correlation_id;
+}
+
 std::uint64_t Operator::land(std::uint32_t id) {
   msg::FlightGoal goal{.module_id = id, .action = msg::FlightAction::land};
   goal.q_WM = {1, 0, 0, 0};
@@ -101,12 +115,28 @@ std::uint64_t Operator::morph(std::uint32_t id, std::span<const double> joint_po
   for (const double angle : joint_position_rad) fits = goal.joint_position_rad.push_back(angle) && fits;
   const std::uint64_t correlation_id = add(msg::GoalKind::morph, words("morph", id), goal);
   if (!fits) {
-    GoalReport& report = goals_[correlation_id].report;
-    report.progress = GoalProgress::refused;
-    report.reason = std::to_string(joint_position_rad.size()) + " joint angles; a chain has at most " +
-                    std::to_string(decltype(goal.joint_position_rad)::bound());
+    refuse(correlation_id, std::to_string(joint_position_rad.size()) + " joint angles; a chain has at most " +
+                               std::to_string(decltype(goal.joint_position_rad)::bound()));
   }
   return correlation_id;
+}
+
+std::uint64_t Operator::contact(std::uint32_t id, std::span<const msg::DesiredContact> links) {
+  msg::ContactGoal goal{.module_id = id};
+  const bool fits = std::all_of(links.begin(), links.end(),
+                                [&](const msg::DesiredContact& link) { return goal.links.push_back(link); });
+  const std::uint64_t correlation_id = add(msg::GoalKind::contact, words("contact", id), goal);
+  if (!fits) {
+    refuse(correlation_id, std::to_string(links.size()) + " contact wrenches; a chain has at most " +
+                               std::to_string(decltype(goal.links)::bound()) + " links");
+  }
+  return correlation_id;
+}
+
+void Operator::refuse(std::uint64_t correlation_id, const std::string& reason) {
+  GoalReport& report = goals_[correlation_id].report;
+  report.progress = GoalProgress::refused;
+  report.reason = reason;
 }
 
 void Operator::poll(TimePoint now) {
@@ -165,20 +195,6 @@ void Operator::answer(Goal& goal, const msg::GoalStatus& status) {
   if (is_over(report.progress)) report.ended_at = stamp;
 }
 
-std::uint32_t Operator::matched(msg::GoalKind kind) const {
-  switch (kind) {
-    case msg::GoalKind::flight:
-      return flight_goal_.matched();
-    case msg::GoalKind::morph:
-      return morph_goal_.matched();
-    case msg::GoalKind::dock:
-      return dock_goal_.matched();
-    case msg::GoalKind::mode:
-      return mode_request_.matched();
-  }
-  return 0;
-}
-
 bool Operator::ready(Goal& goal) {
   const auto* request = std::get_if<msg::ModeRequest>(&goal.message);
   if (request != nullptr && request->action == msg::ModeAction::stop) return true;
@@ -198,7 +214,7 @@ bool Operator::ready(Goal& goal) {
   // A chain's members must all hear it, since they start together; and a match on our side comes before the
   // one on theirs.
   const std::size_t wanted = module->in_chain() ? module->view->members.size() : 1;
-  if (matched(goal.report.kind) < wanted) {
+  if (std::visit([this](const auto& m) { return writer_of(m).matched(); }, goal.message) < wanted) {
     goal.matched = false;
     goal.report.reason = "its radio does not take goals yet";
     return false;
@@ -232,10 +248,13 @@ void Operator::compose(Goal& goal, const KnownModule& module) {
   const auto set_start = [&](auto& m) {
     if (m.start_ns == 0 || from_ns(m.start_ns) + start_expired < module_now()) m.start_ns = start_ns;
   };
+  const std::uint64_t epoch = module.view ? module.view->active_epoch : 0;
   if (auto* flight = std::get_if<msg::FlightGoal>(&goal.message)) set_start(*flight);
+  if (auto* path = std::get_if<msg::PathGoal>(&goal.message)) set_start(*path);
+  if (auto* contact = std::get_if<msg::ContactGoal>(&goal.message)) contact->epoch = epoch;
   if (auto* morph = std::get_if<msg::MorphGoal>(&goal.message)) {
     set_start(*morph);
-    morph->epoch = module.view ? module.view->active_epoch : 0;
+    morph->epoch = epoch;
   }
 }
 
@@ -249,12 +268,8 @@ void Operator::send(Goal& goal) {
   ++goal.report.sent;
   std::visit(
       [&](auto& m) {
-        using T = std::decay_t<decltype(m)>;
         m.stamp_ns = to_ns(module_now());
-        if constexpr (std::is_same_v<T, msg::ModeRequest>) mode_request_.write(m);
-        if constexpr (std::is_same_v<T, msg::FlightGoal>) flight_goal_.write(m);
-        if constexpr (std::is_same_v<T, msg::MorphGoal>) morph_goal_.write(m);
-        if constexpr (std::is_same_v<T, msg::DockGoal>) dock_goal_.write(m);
+        writer_of(m).write(m);
       },
       goal.message);
 }

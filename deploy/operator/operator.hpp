@@ -55,11 +55,16 @@ class Operator {
   std::uint64_t take_off(std::uint32_t id, double height_m);
   /// In a chain: of the base, and the whole chain goes. `speed_m_s` 0: the module's default.
   std::uint64_t go_to(std::uint32_t id, const std::array<double, 3>& p_WM_m, double yaw_rad, double speed_m_s);
+  /// Through poses to rest at the last one, at most 32; in a chain: of the base.
+  std::uint64_t fly_path(std::uint32_t id, std::span<const msg::Waypoint> waypoints, double speed_m_s);
   std::uint64_t land(std::uint32_t id);
   std::uint64_t dock(std::uint32_t follower, std::uint32_t target);
   std::uint64_t undock(std::uint32_t id, std::uint32_t peer);
   /// Joint angles of the whole chain, member by member, yaw then pitch. `rate_rad_s` 0: the default.
   std::uint64_t morph(std::uint32_t id, std::span<const double> joint_position_rad, double rate_rad_s);
+
+  /// Contact wrenches the chain shall keep, link by link in the axes of the member before it; none: all zero.
+  std::uint64_t contact(std::uint32_t id, std::span<const msg::DesiredContact> links);
 
   /// Takes answers, sends what is due. `now`: the caller's clock, wall or virtual. Call it when the participant's
   /// waker is signalled and ten times a second or more.
@@ -73,7 +78,8 @@ class Operator {
   TimePoint module_now() const { return fleet_.module_now(); }
 
  private:
-  using Message = std::variant<msg::ModeRequest, msg::FlightGoal, msg::MorphGoal, msg::DockGoal>;
+  using Message =
+      std::variant<msg::ModeRequest, msg::FlightGoal, msg::PathGoal, msg::MorphGoal, msg::ContactGoal, msg::DockGoal>;
   struct Goal {
     GoalReport report;
     Message message;
@@ -85,6 +91,7 @@ class Operator {
 
   std::uint64_t mode(std::uint32_t id, msg::ModeAction action);
   std::uint64_t add(msg::GoalKind kind, std::string what, Message message);
+  void refuse(std::uint64_t correlation_id, const std::string& reason);
   void take_answers();
   bool is_chain_mate(std::uint32_t id, const Goal& goal) const;
   void answer(Goal& goal, const msg::GoalStatus& status);
@@ -93,7 +100,12 @@ class Operator {
   bool fits_the_chain(Goal& goal, const KnownModule& module);
   void compose(Goal& goal, const KnownModule& module);
   void send(Goal& goal);
-  std::uint32_t matched(msg::GoalKind kind) const;
+  auto& writer_of(const msg::ModeRequest&) { return mode_request_; }
+  auto& writer_of(const msg::FlightGoal&) { return flight_goal_; }
+  auto& writer_of(const msg::PathGoal&) { return path_goal_; }
+  auto& writer_of(const msg::MorphGoal&) { return morph_goal_; }
+  auto& writer_of(const msg::ContactGoal&) { return contact_goal_; }
+  auto& writer_of(const msg::DockGoal&) { return dock_goal_; }
 
   OperatorConfig config_;
   KnownFleet fleet_;
@@ -102,7 +114,9 @@ class Operator {
   std::map<std::uint64_t, Goal> goals_;
   bus::Writer<msg::ModeRequest> mode_request_;
   bus::Writer<msg::FlightGoal> flight_goal_;
+  bus::Writer<msg::PathGoal> path_goal_;
   bus::Writer<msg::MorphGoal> morph_goal_;
+  bus::Writer<msg::ContactGoal> contact_goal_;
   bus::Writer<msg::DockGoal> dock_goal_;
   bus::Reader<msg::GoalStatus> goal_status_;
 };

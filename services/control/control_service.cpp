@@ -17,18 +17,17 @@ constexpr Duration law_silence = std::chrono::milliseconds(300);  // without an 
 
 robot::Pose pose_of(const msg::ModuleState& s) { return {robot::vector(s.p_WM_m), robot::rotation(s.q_WM)}; }
 
-/// The heading of a pose without its roll and pitch.
-robot::Matrix3 upright(const robot::Matrix3& R) {
-  return Eigen::AngleAxisd(std::atan2(R(1, 0), R(0, 0)), robot::Vector3::UnitZ()).toRotationMatrix();
-}
-
 }  // namespace
 
 ControlService::ControlService(bus::Participant& ring, const ControlConfig& config, const robot::Airframe& airframe)
     : config_(config),
       airframe_(airframe),
       reference_(airframe, {.speed_m_s = config.speed_m_s, .limits = {}}),
-      law_({.law = contact_law(config.law), .observer_gain_1_s = config.observer_gain_1_s}),
+      law_({.law = contact_law(config.law),
+            .observer_gain_1_s = config.observer_gain_1_s,
+            .bending_rate_1_s = config.local_rate_1_s,
+            .paper_period_s = 1 / config.paper_rate_Hz,
+            .paper_gain = config.paper_gain}),
       allocator_(airframe),
       module_state_(ring.create_reader(topics::module_state)),
       joint_state_(ring.create_reader(topics::joint_state)),
@@ -40,7 +39,10 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
       beacon_(ring.create_reader(topics::beacon)),
       mode_request_(ring.create_reader(topics::mode_request)),
       flight_goal_(ring.create_reader(topics::flight_goal)),
+      path_goal_(ring.create_reader(topics::path_goal)),
       morph_goal_(ring.create_reader(topics::morph_goal)),
+      contact_goal_(ring.create_reader(topics::contact_goal)),
+      docking_reference_(ring.create_reader(topics::docking_reference)),
       rotor_command_(ring.create_writer(topics::rotor_command)),
       goal_status_(ring.create_writer(topics::goal_status)),
       event_(ring.create_writer(topics::event)) {
@@ -56,8 +58,7 @@ void ControlService::step(TimePoint now) noexcept {
   const bool acts = settled(now);
   judge(now);
   take_requests(now);
-  take_flight_goals(now);
-  take_morph_goals(now);
+  take_goals(now);
   if (acts) {
     follow_mode(now);
     if (flying(mode_)) {
@@ -217,123 +218,26 @@ void ControlService::take_wrenches(TimePoint now) noexcept {
     }
     const double dt_s = std::clamp(to_s(now - law_updated_), 0.0, 0.1);
     law_updated_ = now;
-    law_.update(std::span<const ChainMember>(members).first(w.members.size()), own, {}, dt_s);
+    std::array<robot::Wrench, robot::members_max> desired_W;
+    law_.update(std::span<const ChainMember>(members).first(w.members.size()), own, desired_contacts(desired_W, now),
+                dt_s);
   }
   if (in_chain() && now - law_updated_ > law_silence) {
     law_.fade(to_s(now - last_step_));
   }
 }
 
-void ControlService::take_requests(TimePoint now) noexcept {
-  while (const auto sample = mode_request_.take()) {
-    const msg::ModeRequest& request = sample->value;
-    if (request.module_id != config_.module_id || request.correlation_id == answered_mode_) continue;
-    answered_mode_ = request.correlation_id;
-    FlightDecision decision{.mode = mode_};
-    switch (request.action) {
-      case msg::ModeAction::arm:
-        decision = decide(mode_, FlightRequest::arm, conditions_);
-        break;
-      case msg::ModeAction::disarm:
-        decision = decide(mode_, FlightRequest::disarm, conditions_);
-        break;
-      case msg::ModeAction::stop:
-        decision = decide(mode_, FlightRequest::stop, conditions_);
-        break;
-      case msg::ModeAction::zero:
-        break;  // estimation's
-    }
-    mode_ = decision.mode;
-    answer(msg::GoalKind::mode, request.correlation_id,
-           decision.accepted ? msg::GoalPhase::succeeded : msg::GoalPhase::refused, decision.reason, now);
+std::span<const robot::Wrench> ControlService::desired_contacts(std::span<robot::Wrench> room,
+                                                                TimePoint now) const noexcept {
+  const msg::ContactGoal& goal = contact_goal_now_;
+  if (goal.links.empty() || goal.epoch != view_.active_epoch) return {};
+  std::array<robot::PoseReference, robot::members_max> members;
+  reference_.members_at(seconds(now), members);
+  for (std::size_t k = 0; k < goal.links.size(); ++k) {
+    const robot::Matrix3& R_WM = members[k].R_WM;
+    room[k] = {R_WM * robot::vector(goal.links[k].force_M_N), R_WM * robot::vector(goal.links[k].moment_M_Nm)};
   }
-}
-
-void ControlService::take_flight_goals(TimePoint now) noexcept {
-  while (const auto sample = flight_goal_.take()) {
-    const msg::FlightGoal& goal = sample->value;
-    const bool own = goal.module_id == config_.module_id;
-    if (goal.action == msg::FlightAction::track) {
-      if (own && goal.source == msg::GoalSource::docking && !in_chain() &&
-          decide(mode_, FlightRequest::go_to, conditions_).accepted) {
-        mode_ = FlightMode::hover;
-        reference_.track({robot::vector(goal.p_WM_m), robot::rotation(goal.q_WM)}, robot::vector(goal.v_WM_m_s),
-                         seconds(from_ns(goal.stamp_ns)));
-        goal_pending_ = false;
-      }
-      continue;
-    }
-    // A goal to a member of a chain moves the chain; only the member it names answers.
-    if (!own && !(in_chain() && is_member(goal.module_id))) continue;
-    if (goal.correlation_id == answered_flight_) continue;
-    answered_flight_ = goal.correlation_id;
-    const FlightDecision decision = decide_goal(goal);
-    mode_ = decision.mode;
-    if (own) {
-      answer(msg::GoalKind::flight, goal.correlation_id,
-             decision.accepted ? msg::GoalPhase::accepted : msg::GoalPhase::refused, decision.reason, now);
-    }
-    if (decision.accepted) begin(goal, now);
-  }
-}
-
-FlightDecision ControlService::decide_goal(const msg::FlightGoal& goal) const noexcept {
-  switch (goal.action) {
-    case msg::FlightAction::takeoff:
-      return decide(mode_, FlightRequest::takeoff, conditions_);
-    case msg::FlightAction::goto_:
-      if (docking_.phase != msg::DockingPhase::idle && docking_.phase != msg::DockingPhase::docked) {
-        return {mode_, false, "docking is under way: wait until it is done"};
-      }
-      return decide(mode_, FlightRequest::go_to, conditions_);
-    case msg::FlightAction::land:
-      if (in_chain()) return {mode_, false, "a chain does not land: undock first"};
-      return decide(mode_, FlightRequest::land, conditions_);
-    case msg::FlightAction::track:
-      break;
-  }
-  return {mode_, false, "not a goal for an operator"};
-}
-
-void ControlService::begin(const msg::FlightGoal& goal, TimePoint now) noexcept {
-  const double now_s = seconds(now);
-  goal_ = goal;
-  goal_pending_ = true;
-  const robot::Pose X_goal{robot::vector(goal.p_WM_m), robot::rotation(goal.q_WM)};
-  switch (goal.action) {
-    case msg::FlightAction::takeoff:
-      pose_control_.reset();
-      reference_.hold({motion_.p_WM, motion_.R_WM});
-      reference_.move({{motion_.p_WM.x(), motion_.p_WM.y(), goal.p_WM_m[2]}, upright(motion_.R_WM)},
-                      config_.takeoff_m_s, now_s);
-      break;
-    case msg::FlightAction::goto_:
-      if (in_chain()) {
-        reference_.move_base(X_goal, goal.speed_m_s, std::max(now_s, seconds(from_ns(goal.start_ns))), now_s);
-      } else {
-        reference_.move(X_goal, goal.speed_m_s, now_s);
-      }
-      break;
-    case msg::FlightAction::land:
-      touchdown_.reset();
-      reference_.descend(config_.landing_m_s, now_s);
-      break;
-    case msg::FlightAction::track:
-      break;
-  }
-}
-
-void ControlService::take_morph_goals(TimePoint now) noexcept {
-  while (const auto sample = morph_goal_.take()) {
-    const msg::MorphGoal& goal = sample->value;
-    if (!in_chain() || goal.epoch != view_.active_epoch || goal.correlation_id == answered_morph_) continue;
-    answered_morph_ = goal.correlation_id;
-    // The joints service of the member it names answers; it comes to the same verdict.
-    const std::span<const double> joint_rad(goal.joint_position_rad.data(), goal.joint_position_rad.size());
-    const double now_s = seconds(now);
-    static_cast<void>(
-        reference_.morph(joint_rad, goal.rate_rad_s, std::max(now_s, seconds(from_ns(goal.start_ns))), now_s));
-  }
+  return room.first(goal.links.size());
 }
 
 void ControlService::judge(TimePoint now) noexcept {
@@ -357,15 +261,13 @@ void ControlService::follow_mode(TimePoint now) noexcept {
   mode_ = advance(before, conditions_).mode;
   if (before == FlightMode::failsafe && mode_ == FlightMode::hover) {
     // Apart it stays where it drifted to; a member of a chain goes back to its place in it.
-    if (!in_chain()) reference_.hold({motion_.p_WM, upright(motion_.R_WM)});
+    if (!in_chain()) reference_.hold({motion_.p_WM, robot::upright(motion_.R_WM)});
     pose_control_.reset();
   }
   const bool done = goal_pending_ && (conditions_.trajectory_finished || conditions_.landed);
   if (!done) return;
   goal_pending_ = false;
-  if (goal_.module_id == config_.module_id) {
-    answer(msg::GoalKind::flight, goal_.correlation_id, msg::GoalPhase::succeeded, "", now);
-  }
+  if (goal_is_ours_) answer(msg::GoalKind::flight, goal_id_, msg::GoalPhase::succeeded, "", now);
 }
 
 void ControlService::write_rotors(TimePoint now) noexcept {
@@ -415,18 +317,6 @@ void ControlService::write_idle(TimePoint now) noexcept {
   }
   rotor_command_.write(out);
   pose_control_.reset();
-}
-
-void ControlService::answer(msg::GoalKind kind, std::uint64_t correlation_id, msg::GoalPhase phase,
-                            std::string_view reason, TimePoint now) noexcept {
-  msg::GoalStatus out;
-  out.module_id = config_.module_id;
-  out.goal = kind;
-  out.stamp_ns = to_ns(now);
-  out.correlation_id = correlation_id;
-  out.phase = phase;
-  out.reason = reason;
-  goal_status_.write(out);
 }
 
 void ControlService::report_mode(TimePoint now) noexcept {

@@ -24,6 +24,9 @@ struct ControlConfig {
   std::uint32_t module_id = 0;
   double period_s = 0.002;  // its own pace, where states come slower
   std::string law = "local";
+  double paper_gain = 0.4;     // of the paper's law: gamma at N = 2, halved for each further member
+  double paper_rate_Hz = 10;   // and how often it is applied
+  double local_rate_1_s = 14;  // of the local law, by the number of members; at most a third of the observer's gain
   bool disturbance_feedback = true;  // the observer's wrench fed back in free flight
   double takeoff_m_s = 0.5;
   double landing_m_s = 0.3;
@@ -34,6 +37,9 @@ struct ControlConfig {
   void visit_fields(V& v) {
     v("period_s", period_s, in_range(0.001, 0.02));
     v("law", law, one_of({"none", "paper", "local"}));
+    v("paper_gain", paper_gain, in_range(0.001, 1));
+    v("paper_rate_Hz", paper_rate_Hz, in_range(1, 100));
+    v("local_rate_1_s", local_rate_1_s, in_range(0.1, 100));
     v("disturbance_feedback", disturbance_feedback);
     v("takeoff_m_s", takeoff_m_s, in_range(0.05, 2));
     v("landing_m_s", landing_m_s, in_range(0.05, 1));
@@ -50,7 +56,7 @@ class ControlService final : public runtime::Service {
     return runtime::on(module_state_, from_s(config_.period_s), runtime::Phase::control);
   }
   void step(TimePoint now) noexcept override;
-  std::uint32_t state_version() const noexcept override { return 1; }
+  std::uint32_t state_version() const noexcept override { return 2; }
   void save_state(runtime::StateWriter& writer) const noexcept override { visit_state(*this, writer); }
   void load_state(runtime::StateReader& reader) noexcept override;
   void describe(msg::Heartbeat& heartbeat) const noexcept override { heartbeat.flight_mode = to_message(mode_); }
@@ -63,8 +69,8 @@ class ControlService final : public runtime::Service {
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
     v(self.mode_, self.reference_, self.pose_control_, self.law_, self.feedback_, self.allocator_, self.epoch_,
-      self.last_step_, self.view_, self.goal_, self.goal_pending_, self.answered_mode_, self.answered_flight_,
-      self.answered_morph_);
+      self.last_step_, self.view_, self.goal_id_, self.goal_is_ours_, self.goal_pending_, self.contact_goal_now_,
+      self.answered_mode_, self.answered_flight_, self.answered_morph_, self.answered_contact_);
   }
 
   /// After a start: whether it is known what the rotors do and what follows from it.
@@ -73,13 +79,25 @@ class ControlService final : public runtime::Service {
   void take_surroundings() noexcept;
   void take_chain(TimePoint now) noexcept;
   void take_requests(TimePoint now) noexcept;
-  void take_flight_goals(TimePoint now) noexcept;
-  void take_morph_goals(TimePoint now) noexcept;
   void take_wrenches(TimePoint now) noexcept;
 
-  void enter_chain(const msg::ChainView& view, TimePoint now) noexcept;
-  void begin(const msg::FlightGoal& goal, TimePoint now) noexcept;
+  void take_goals(TimePoint now) noexcept;
+  void take_flight_goal(const msg::FlightGoal& goal, TimePoint now) noexcept;
+  void take_path_goal(const msg::PathGoal& goal, TimePoint now) noexcept;
+  void take_morph_goal(const msg::MorphGoal& goal, TimePoint now) noexcept;
+  void take_contact_goal(const msg::ContactGoal& goal, TimePoint now) noexcept;
+  void take_docking_reference(const msg::DockingReference& reference, TimePoint at) noexcept;
+  bool concerns_us(std::uint32_t module_id) const;
+  double start_s(std::int64_t start_ns, TimePoint now) const;
   FlightDecision decide_goal(const msg::FlightGoal& goal) const noexcept;
+  FlightDecision decide_motion() const noexcept;
+  void answer_flight(std::uint32_t module_id, std::uint64_t correlation_id, const FlightDecision& decision,
+                     TimePoint now) noexcept;
+  void begin(const msg::FlightGoal& goal, TimePoint now) noexcept;
+
+  void enter_chain(const msg::ChainView& view, TimePoint now) noexcept;
+  /// Contact wrenches asked for, each turned into world axes by its member's reference.
+  std::span<const robot::Wrench> desired_contacts(std::span<robot::Wrench> room, TimePoint now) const noexcept;
   void judge(TimePoint now) noexcept;
   void follow_mode(TimePoint now) noexcept;
   void write_rotors(TimePoint now) noexcept;
@@ -129,9 +147,11 @@ class ControlService final : public runtime::Service {
   std::array<Peer, robot::members_max> peers_{};
   Peer* peer(std::uint32_t module_id) noexcept;
 
-  msg::FlightGoal goal_;  // the one being flown
+  std::uint64_t goal_id_ = 0;  // the one being flown
+  bool goal_is_ours_ = false;  // to answer
   bool goal_pending_ = false;
-  std::uint64_t answered_mode_ = 0, answered_flight_ = 0, answered_morph_ = 0;
+  msg::ContactGoal contact_goal_now_;
+  std::uint64_t answered_mode_ = 0, answered_flight_ = 0, answered_morph_ = 0, answered_contact_ = 0;
   FlightMode reported_mode_ = FlightMode::disarmed;
 
   bus::Reader<msg::ModuleState> module_state_;
@@ -144,7 +164,10 @@ class ControlService final : public runtime::Service {
   bus::Reader<msg::Beacon> beacon_;
   bus::Reader<msg::ModeRequest> mode_request_;
   bus::Reader<msg::FlightGoal> flight_goal_;
+  bus::Reader<msg::PathGoal> path_goal_;
   bus::Reader<msg::MorphGoal> morph_goal_;
+  bus::Reader<msg::ContactGoal> contact_goal_;
+  bus::Reader<msg::DockingReference> docking_reference_;
   bus::Writer<msg::RotorCommand> rotor_command_;
   bus::Writer<msg::GoalStatus> goal_status_;
   bus::Writer<msg::Event> event_;

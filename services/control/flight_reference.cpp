@@ -18,26 +18,35 @@ void FlightReference::hold(const Pose& X_WM) {
   motion_ = PoseMotion(X_WM);
 }
 
-void FlightReference::move(const Pose& X_WM, double speed_m_s, double now_s) {
+void FlightReference::move(const Pose& X_WM, double speed_m_s, double start_s, double now_s) {
   robot::TrajectoryLimits limits = config_.limits;
   limits.speed_m_s = speed_m_s > 0 ? speed_m_s : config_.speed_m_s;
-  const PoseReference from = at(now_s);
+  motion_ = PoseMotion(leading(now_s), X_WM, start_s, robot::SpeedProfile::trapezoid, limits);
   kind_ = Kind::motion;
-  motion_ = PoseMotion(from, X_WM, now_s, robot::SpeedProfile::trapezoid, limits);
 }
 
-void FlightReference::track(const Pose& X_WM, const robot::Vector3& v_WM, double stamp_s) {
+void FlightReference::follow(std::span<const Pose> waypoints, double speed_m_s, double start_s, double now_s) {
+  robot::TrajectoryLimits limits = config_.limits;
+  limits.speed_m_s = speed_m_s > 0 ? speed_m_s : config_.speed_m_s;
+  limits.rate_rad_s = config_.path_rate_rad_s;
+  std::array<Pose, robot::waypoints_max> through;
+  const std::size_t count = std::min(waypoints.size() + 1, through.size());
+  const PoseReference from = leading(now_s);
+  through[0] = {from.p_WM, from.R_WM};
+  std::copy_n(waypoints.begin(), count - 1, through.begin() + 1);
+  path_ = robot::PoseSpline(std::span(through).first(count), start_s, robot::SpeedProfile::trapezoid, limits);
+  kind_ = Kind::path;
+}
+
+void FlightReference::track(const PoseReference& reference, double stamp_s) {
   kind_ = Kind::track;
-  tracked_ = {};
-  tracked_.p_WM = X_WM.p;
-  tracked_.R_WM = X_WM.R;
-  tracked_.v_WM = v_WM;
+  tracked_ = reference;
   tracked_s_ = stamp_s;
 }
 
 void FlightReference::descend(double speed_m_s, double now_s) {
   // A tracked reference that is renewed by itself: it goes down until somebody sees the ground.
-  const PoseReference from = at(now_s);
+  const PoseReference from = leading(now_s);
   kind_ = Kind::descend;
   tracked_ = {};
   tracked_.p_WM = from.p_WM;
@@ -63,24 +72,22 @@ void FlightReference::join(const ChainPlace& place, std::span<const double> join
   offset_R_ = shared.R_WM.transpose() * own.R_WM;
 }
 
-void FlightReference::move_base(const Pose& X_WM_goal, double speed_m_s, double start_s, double now_s) {
-  robot::TrajectoryLimits limits = config_.limits;
-  limits.speed_m_s = speed_m_s > 0 ? speed_m_s : config_.speed_m_s;
-  motion_ = PoseMotion(motion_.at(now_s), X_WM_goal, start_s, robot::SpeedProfile::trapezoid, limits);
-}
-
 void FlightReference::leave(double now_s) {
   const PoseReference own = at(now_s);
   in_chain_ = false;
   hold({own.p_WM, own.R_WM});
 }
 
-PoseReference FlightReference::own_part(double now_s) const {
+void FlightReference::members_at(double now_s, std::span<PoseReference> members) const {
   std::array<robot::ScalarMotion, robot::coordinates_max> joints;
-  std::array<PoseReference, robot::members_max> members;
   const std::span part = std::span(joints).first(place_.members * airframe_.joints.size());
   joints_.at(now_s, part);
-  robot::chain_references(airframe_, place_.base, motion_.at(now_s), part, std::span(members).first(place_.members));
+  robot::chain_references(airframe_, place_.base, leading(now_s), part, members.first(place_.members));
+}
+
+PoseReference FlightReference::own_part(double now_s) const {
+  std::array<PoseReference, robot::members_max> members;
+  members_at(now_s, members);
   PoseReference own = members[place_.own];
   own.p_WM += offset_p_;
   own.R_WM = own.R_WM * offset_R_;
@@ -89,11 +96,12 @@ PoseReference FlightReference::own_part(double now_s) const {
   return own;
 }
 
-PoseReference FlightReference::at(double now_s) const {
-  if (in_chain_) return own_part(now_s);
+PoseReference FlightReference::leading(double now_s) const {
   switch (kind_) {
     case Kind::motion:
       return motion_.at(now_s);
+    case Kind::path:
+      return path_.at(now_s);
     case Kind::descend: {
       PoseReference r = tracked_;
       r.p_WM += r.v_WM * (now_s - tracked_s_);
@@ -103,15 +111,23 @@ PoseReference FlightReference::at(double now_s) const {
       PoseReference r = tracked_;
       const double ahead_s = std::clamp(now_s - tracked_s_, 0.0, config_.track_hold_s);
       r.p_WM += r.v_WM * ahead_s;
-      if (ahead_s >= config_.track_hold_s) r.v_WM.setZero();
+      r.R_WM = r.R_WM * robot::exp_so3(r.w_WM_M * ahead_s);
+      if (ahead_s >= config_.track_hold_s) {
+        r.v_WM.setZero();
+        r.w_WM_M.setZero();
+      }
       return r;
     }
   }
   return {};
 }
 
+PoseReference FlightReference::at(double now_s) const { return in_chain_ ? own_part(now_s) : leading(now_s); }
+
 bool FlightReference::arrived(double now_s) const {
-  return kind_ == Kind::motion && motion_.finished(now_s) && (!in_chain_ || joints_.finished(now_s));
+  const bool there =
+      (kind_ == Kind::motion && motion_.finished(now_s)) || (kind_ == Kind::path && path_.finished(now_s));
+  return there && (!in_chain_ || joints_.finished(now_s));
 }
 
 }  // namespace eciton::control

@@ -1,5 +1,6 @@
-// Where a module shall be, moment by moment: apart, it holds, moves to a goal or tracks a moving one; in a
-// chain it flies its own part of the base's motion and of the joints'. Pure; times are seconds of one clock.
+// Where a module shall be, moment by moment: it holds, moves to a goal, flies a path or tracks a moving
+// reference. In a chain all of that is the base's, and the module flies its own part of it and of the joints'.
+// Pure; times are seconds of one clock.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +17,7 @@ struct FlightReferenceConfig {
   double speed_m_s = 0.5;     // of a goto without one
   double track_hold_s = 0.2;  // a tracked reference older than this stands still
   robot::TrajectoryLimits limits;
+  double path_rate_rad_s = 1.5;  // of a path, which turns while it moves
 };
 
 /// A module's place in a chain.
@@ -29,20 +31,21 @@ class FlightReference {
  public:
   FlightReference(const robot::Airframe& airframe, const FlightReferenceConfig& config);
 
-  /// Apart: stand at this pose of M.
+  // What follows is of M apart, and of the base's M, as all members know it, in a chain.
+  /// Stand at this pose.
   void hold(const robot::Pose& X_WM);
-  /// Apart: from the present reference to rest at a goal.
-  void move(const robot::Pose& X_WM, double speed_m_s, double now_s);
-  /// Apart: a reference that moves by itself, given again and again.
-  void track(const robot::Pose& X_WM, const robot::Vector3& v_WM, double stamp_s);
-  /// Apart: straight down from the present reference, for ever.
+  /// From the present reference to rest at a goal.
+  void move(const robot::Pose& X_WM, double speed_m_s, double start_s, double now_s);
+  /// From the present reference, which is at rest, through poses to rest at the last one.
+  void follow(std::span<const robot::Pose> waypoints, double speed_m_s, double start_s, double now_s);
+  /// A reference that moves by itself, given again and again.
+  void track(const robot::PoseReference& reference, double stamp_s);
+  /// Straight down from the present reference, for ever.
   void descend(double speed_m_s, double now_s);
 
   /// Into a chain, without a jump: from the present reference, which fixes where this module sees the base,
   /// given the chain's joint angles (member by member).
   void join(const ChainPlace& place, std::span<const double> joint_rad, const robot::Pose& X_WM_base, double now_s);
-  /// In a chain: the base (as all members know it) moves to a goal pose of its M.
-  void move_base(const robot::Pose& X_WM_goal, double speed_m_s, double start_s, double now_s);
   /// In a chain: the joints move and the reference follows. A refusal changes nothing.
   std::optional<robot::LimitFault> morph(std::span<const double> joint_rad, double rate_rad_s, double start_s,
                                          double now_s) {
@@ -52,25 +55,30 @@ class FlightReference {
   void leave(double now_s);
 
   robot::PoseReference at(double now_s) const;
+  /// In a chain: what the shared base and joints say of every member, the own offset left out.
+  void members_at(double now_s, std::span<robot::PoseReference> members) const;
   bool in_chain() const { return in_chain_; }
   /// Whether the last motion has come to its end.
   bool arrived(double now_s) const;
+  bool at_rest(double now_s) const { return kind_ == Kind::motion && motion_.finished(now_s); }
 
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
-    v(self.kind_, self.motion_, self.tracked_, self.tracked_s_, self.in_chain_, self.place_, self.offset_p_,
-      self.offset_R_, self.joints_);
+    v(self.kind_, self.motion_, self.path_, self.tracked_, self.tracked_s_, self.in_chain_, self.place_,
+      self.offset_p_, self.offset_R_, self.joints_);
   }
 
  private:
-  enum class Kind { motion, track, descend };
+  enum class Kind { motion, path, track, descend };
 
+  robot::PoseReference leading(double now_s) const;
   robot::PoseReference own_part(double now_s) const;
 
   robot::Airframe airframe_;
   FlightReferenceConfig config_;
   Kind kind_ = Kind::motion;
-  robot::PoseMotion motion_;  // apart: of M; in a chain: of the base's M, as all members know it
+  robot::PoseMotion motion_;
+  robot::PoseSpline path_;
   robot::PoseReference tracked_;
   double tracked_s_ = 0;
 

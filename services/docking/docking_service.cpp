@@ -34,7 +34,7 @@ DockingService::DockingService(bus::Participant& ring, const DockingServiceConfi
       docking_states_(ring.create_reader(topics::docking_state)),
       beacons_(ring.create_reader(topics::beacon)),
       heartbeats_(ring.create_reader(topics::heartbeat)),
-      flight_goal_(ring.create_writer(topics::flight_goal)),
+      docking_reference_(ring.create_writer(topics::docking_reference)),
       latch_command_(ring.create_writer(topics::latch_command)),
       docking_state_(ring.create_writer(topics::docking_state)),
       goal_status_(ring.create_writer(topics::goal_status)),
@@ -290,16 +290,13 @@ void DockingService::write_reference(TimePoint now) noexcept {
   const std::span<const double> joints(own().joint_rad.data(), airframe_.joints.size());
   const robot::Pose X_WF = X_WT_ * out.X_TF_reference;
   const robot::Pose X_WB = X_WF * robot::port_pose_B(airframe_, static_cast<int>(pairing_.port), joints).inverse();
-  msg::FlightGoal goal;
-  goal.module_id = config_.module_id;
-  goal.stamp_ns = to_ns(now);
-  goal.correlation_id = goal_id_;
-  goal.source = msg::GoalSource::docking;
-  goal.action = msg::FlightAction::track;
-  goal.p_WM_m = robot::array(X_WB * robot::com_offset_B(airframe_, joints));
-  goal.q_WM = robot::quaternion(X_WB.R);
-  goal.v_WM_m_s = robot::array(X_WT_.R * out.v_TF_reference);
-  flight_goal_.write(goal);
+  msg::DockingReference reference;
+  reference.module_id = config_.module_id;
+  reference.stamp_ns = to_ns(now);
+  reference.p_WM_m = robot::array(X_WB * robot::com_offset_B(airframe_, joints));
+  reference.q_WM = robot::quaternion(X_WB.R);
+  reference.v_WM_m_s = robot::array(X_WT_.R * out.v_TF_reference);
+  docking_reference_.write(reference);
 }
 
 void DockingService::be_target(TimePoint now, double dt_s) noexcept {

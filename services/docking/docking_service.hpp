@@ -134,7 +134,7 @@ class DockingService final : public runtime::Service {
   bus::Reader<msg::DockingState> docking_states_;
   bus::Reader<msg::Beacon> beacons_;
   bus::Reader<msg::Heartbeat> heartbeats_;
-  bus::Writer<msg::FlightGoal> flight_goal_;
+  bus::Writer<msg::DockingReference> docking_reference_;
   bus::Writer<msg::LatchCommand> latch_command_;
   bus::Writer<msg::DockingState> docking_state_;
   bus::Writer<msg::GoalStatus> goal_status_;

@@ -20,6 +20,8 @@ std::uint32_t module_of(const bus::TopicInfo& topic, std::span<const std::uint8_
 constexpr Duration echo_age_max = std::chrono::seconds(20);  // of a peer that is still there
 constexpr std::uint32_t rtps_overhead_bytes = 98;  // Ethernet 14, IP 20, UDP 8, RTPS 20, time stamp 12, data 24
 
+enum class Crosses { always, near, chained };  // outward: at any time, near a peer, in a chain
+
 }  // namespace
 
 /// One topic's way across. Outward: this module's own samples, within the rate. Inward: the peers' samples,
@@ -31,7 +33,7 @@ struct RadioService::Route {
   bus::RawWriter to_ring;
   RateLimit limit;
   bool goal;
-  bool near_only;
+  Crosses crosses;
   RadioService* radio = nullptr;
 };
 
@@ -68,10 +70,12 @@ void RadioService::add_route(const bus::TopicInfo& topic) {
   const auto interval = [](double rate_Hz) { return from_s(1 / rate_Hz); };
   const bool wrench = topic.name == topics::external_wrench.name;
   const bool joints = topic.name == topics::joint_state.name;
+  // A docking module's own reference is for its own control; that of a chain is for all members.
+  const bool chained = topic.name == topics::docking_reference.name;
   Duration pace{};
   if (wrench) pace = interval(config_.wrench_rate_Hz);
   if (joints) pace = interval(config_.joint_rate_Hz);
-  if (topic.name == topics::module_state.name) pace = interval(config_.state_rate_Hz);
+  if (topic.name == topics::module_state.name || chained) pace = interval(config_.state_rate_Hz);
   const bool goal = topic.qos == bus::QosClass::command;
   routes_.push_back({.from_ring = ring_.create_raw_reader(topic),
                      .to_swarm = swarm_.create_raw_writer(topic),
@@ -79,7 +83,9 @@ void RadioService::add_route(const bus::TopicInfo& topic) {
                      .to_ring = ring_.create_raw_writer(topic),
                      .limit = RateLimit(pace),
                      .goal = goal,
-                     .near_only = wrench || joints,
+                     .crosses = chained            ? Crosses::chained
+                                : wrench || joints ? Crosses::near
+                                                   : Crosses::always,
                      .radio = this});
 }
 
@@ -104,7 +110,8 @@ void RadioService::forward_out(Route& route) noexcept {
         RadioService& radio = *r.radio;
         const std::uint32_t module = module_of(r.from_ring.topic(), cdr);
         if (r.goal || module != radio.config_.module_id) return;
-        if (r.near_only && !radio.near_) return;
+        if (r.crosses == Crosses::near && !radio.near_) return;
+        if (r.crosses == Crosses::chained && !radio.chained_) return;
         if (!r.limit.allow(radio.now_, module)) return;
         ++(r.to_swarm.write(cdr) ? radio.sent_ : radio.dropped_);
         radio.airtime_.add(radio.now_, cdr.size());
