@@ -28,10 +28,18 @@ struct ExperimentConfig {
   }
 };
 
+/// A moment of the flight, to be drawn after it: where everything was.
+struct Still {
+  std::string title;
+  double time_s = 0;
+  std::vector<double> posture;  // of the world's physics
+};
+
 /// Flat names and series of one trial, or of all.
 struct Figures {
   std::map<std::string, double> metrics;
   std::map<std::string, std::vector<double>> series;
+  std::vector<Still> stills;
 };
 
 struct Experiment {

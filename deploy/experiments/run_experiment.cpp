@@ -37,6 +37,9 @@ std::string run_to_text(const Experiment& experiment, const ExperimentConfig& co
     const Figures figures = experiment.run_trial(config, trial);
     out["metrics"] = figures.metrics;
     out["series"] = figures.series;
+    for (const Still& still : figures.stills) {
+      out["stills"].push_back({{"title", still.title}, {"time_s", still.time_s}, {"posture", still.posture}});
+    }
   } catch (const BadInput& bad) {
     out["bad_input"] = bad.error.message;
   } catch (const std::exception& e) {
@@ -78,8 +81,15 @@ Figures finish(const Worker& worker) {
   if (out.is_discarded()) throw std::runtime_error(which + " ended without a result");
   if (out.contains("bad_input")) throw BadInput{{out["bad_input"].get<std::string>()}};
   if (out.contains("error")) throw std::runtime_error(which + ": " + out["error"].get<std::string>());
-  return {out["metrics"].get<std::map<std::string, double>>(),
-          out["series"].get<std::map<std::string, std::vector<double>>>()};
+  Figures figures;
+  figures.metrics = out["metrics"].get<std::map<std::string, double>>();
+  figures.series = out["series"].get<std::map<std::string, std::vector<double>>>();
+  for (const Json& still : out.value("stills", Json::array())) {
+    figures.stills.push_back({.title = still["title"].get<std::string>(),
+                              .time_s = still["time_s"].get<double>(),
+                              .posture = still["posture"].get<std::vector<double>>()});
+  }
+  return figures;
 }
 
 }  // namespace
