@@ -176,6 +176,25 @@ void Simulation::restart(std::size_t module, const std::string& service, bool fr
   m.restarted.push_back(std::move(process));
 }
 
+void Simulation::replace(std::size_t module, const std::string& service,
+                         const std::function<void(ModuleConfig&)>& change) {
+  kill(module, service);
+  change(modules_[module]->config);
+  restart(module, service);
+}
+
+void Simulation::silence_swarm(bool silent) {
+  if (!silent) {
+    swarm().heal();
+    return;
+  }
+  std::vector<std::vector<std::string>> alone;
+  for (const auto& module : modules_) {
+    alone.push_back({module->config.name + "/radio", module->config.name + "/radio again"});
+  }
+  swarm().partition(alone);
+}
+
 bus::Participant& Simulation::listener(std::size_t module) { return *modules_[module]->listener; }
 
 }  // namespace eciton::deploy

@@ -2,6 +2,7 @@
 // world behind them, in virtual time. The experiments and scenario tests run in it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -55,6 +56,11 @@ class Simulation {
   void kill(std::size_t module, const std::string& service);
   /// As if its supervisor started it again, with what the kill left, or without. Each service once.
   void restart(std::size_t module, const std::string& service, bool from_checkpoint = true);
+  /// Starts a running service anew with its config changed, from its checkpoint: as an operator does who edits the
+  /// file. Each service once.
+  void replace(std::size_t module, const std::string& service, const std::function<void(ModuleConfig&)>& change);
+  /// Nobody hears anybody on the swarm ring, until it is false.
+  void silence_swarm(bool silent);
   bus::sim_network::Network& swarm() { return bus::sim_network::Network::of(config_.module.swarm_ring.domain); }
   std::size_t size() const { return config_.world.modules.size(); }
   std::uint32_t id(std::size_t module) const { return config_.world.modules[module].id; }

@@ -42,7 +42,7 @@ ExperimentConfig make_config(const Options& options) {
   ExperimentConfig config;
   ok_or_throw(read_config(tree, config));
   config.seed = options.seed;
-  config.trials = options.experiment->has_trials ? options.trials : 1;
+  config.trials = options.trials;
   config.break_what = options.break_what;
   return config;
 }
@@ -52,14 +52,10 @@ Measurement make_measurement(const Options& options, const ExperimentConfig& con
   out.command = "experiment " + options.experiment->name;
   out.clock = "simulated";
   out.seed = options.seed;
-  out.config = {{"trials", config.trials},
-                {"break", config.break_what},
-                {"world", config.simulation.world.world},
-                {"sensing", config.simulation.world.sensing},
-                {"gust_N", config.simulation.world.gust_N},
-                {"wakes", config.simulation.world.wakes},
-                {"law", config.simulation.module.control.law},
-                {"set", options.assignments}};
+  out.config = {{"trials", trials_of(*options.experiment, config)}, {"break", config.break_what},
+                {"world", config.simulation.world.world},           {"sensing", config.simulation.world.sensing},
+                {"gust_N", config.simulation.world.gust_N},         {"wakes", config.simulation.world.wakes},
+                {"law", config.simulation.module.control.law},      {"set", options.assignments}};
   out.metrics = figures.metrics;
   out.series = figures.series;
   return out;
@@ -72,7 +68,9 @@ int run(const Options& options) {
   const bool live = ::isatty(STDERR_FILENO) != 0;
   const auto began = std::chrono::steady_clock::now();
   const Figures figures = run_experiment(*options.experiment, config, options.jobs, [&](std::uint32_t finished) {
-    if (live) std::fprintf(stderr, "\r%s: %u of %u", options.experiment->name.c_str(), finished, config.trials);
+    if (live)
+      std::fprintf(stderr, "\r%s: %u of %u", options.experiment->name.c_str(), finished,
+                   trials_of(*options.experiment, config));
   });
   if (live) std::fprintf(stderr, "\r\033[K");
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

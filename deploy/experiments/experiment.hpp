@@ -17,11 +17,13 @@ struct ExperimentConfig {
   std::uint32_t trials = 1;
   std::uint32_t modules = 0;  // 0: as many as the experiment needs
   std::string break_what;     // a control that must fail
+  bool paper_grid = true;  // scaling: the paper's law too, at each setting of a grid
   SimulationConfig simulation;
 
   template <class V>
   void visit_fields(V& v) {
     v("modules", modules, in_range(0, 16));
+    v("paper_grid", paper_grid);
     v("world", simulation.world);
     v("radio_link", simulation.radio_link);
     v("module", simulation.module);
@@ -47,15 +49,30 @@ struct Experiment {
   std::string summary;
   std::uint32_t modules;  // when the config does not say
   bool has_trials;
+  /// Without --trials: how many runs it consists of; empty: one.
+  std::uint32_t (*runs)(const ExperimentConfig& config) = nullptr;
   std::vector<std::string> breaks;  // what --break understands
   Figures (*run_trial)(const ExperimentConfig& config, std::uint32_t trial);
   /// From all trials' figures, in their order.
   Figures (*summarise)(const std::vector<Figures>& trials);
 };
 
+/// For an experiment that is one trial.
+Figures only_trial(const std::vector<Figures>& trials);
+
 const std::vector<Experiment>& experiments();
 extern const Experiment hover_experiment;
 extern const Experiment docking_experiment;
+extern const Experiment morph_experiment;
+extern const Experiment tracking_experiment;
+extern const Experiment ablation_experiment;
+extern const Experiment scaling_experiment;
+extern const Experiment wind_experiment;
+extern const Experiment silence_experiment;
+extern const Experiment forest_experiment;
+
+/// What it is made of: trials as the config says, or the experiment's own runs.
+std::uint32_t trials_of(const Experiment& experiment, const ExperimentConfig& config);
 
 /// Runs the trials in so many processes; the figures do not depend on how many. `progress` is called with the
 /// number of finished trials. Throws BadInput, or std::runtime_error when a trial broke down.

@@ -59,8 +59,6 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   return figures;
 }
 
-Figures summarise(const std::vector<Figures>& trials) { return trials.front(); }
-
 }  // namespace
 
 const Experiment hover_experiment{.name = "hover",
@@ -69,6 +67,6 @@ const Experiment hover_experiment{.name = "hover",
                                   .has_trials = false,
                                   .breaks = {},
                                   .run_trial = &run_trial,
-                                  .summarise = &summarise};
+                                  .summarise = &only_trial};
 
 }  // namespace eciton::deploy

@@ -8,6 +8,8 @@ namespace eciton::deploy {
 namespace {
 
 constexpr Duration poll_period = std::chrono::milliseconds(20);
+constexpr double dock_limit_s = 60;
+constexpr double agree_limit_s = 10;
 
 }  // namespace
 
@@ -69,9 +71,73 @@ void Pilot::bring_to_hover(const std::vector<double>& heights_m) {
 }
 
 GoalReport Pilot::dock(std::uint32_t follower, std::uint32_t target, double limit_s) {
-  const std::uint64_t goal = operator_.dock(follower, target);
-  follow(goal, limit_s);
-  return *operator_.report(goal);
+  const double limit_at_s = simulation_.elapsed_s() + limit_s;
+  while (true) {
+    const std::uint64_t goal = operator_.dock(follower, target);
+    follow(goal, limit_at_s - simulation_.elapsed_s());
+    const GoalReport& report = *operator_.report(goal);
+    // A disturbance may have made an observer measure its bias anew; that takes a while in free hover. And the last
+    // docking may not have come to its end on both sides.
+    const bool again =
+        report.progress == GoalProgress::refused && (report.reason.find("zero") != std::string::npos ||
+                                                     report.reason.find("docking already") != std::string::npos);
+    if (!again || simulation_.elapsed_s() >= limit_at_s) return report;
+    wait(0.5);
+  }
+}
+
+std::vector<std::uint32_t> Pilot::members(std::uint32_t id) const {
+  const KnownModule* module = fleet().find(id);
+  if (module == nullptr || !module->in_chain()) return {id};
+  return {module->view->members.begin(), module->view->members.end()};
+}
+
+std::uint32_t Pilot::base(std::uint32_t id) const {
+  const std::vector<std::uint32_t> chain = members(id);
+  return chain[(chain.size() + 1) / 2 - 1];
+}
+
+bool Pilot::agreed(std::size_t count) const {
+  const KnownModule* first = fleet().find(simulation_.id(0));
+  for (std::size_t k = 0; k < count; ++k) {
+    const KnownModule* module = fleet().find(simulation_.id(k));
+    if (module == nullptr || !module->view || !module->view->active || !module->settled()) return false;
+    if (module->view->active_epoch != first->view->active_epoch || module->view->members.size() != count)
+      return false;
+  }
+  return true;
+}
+
+void Pilot::assemble() {
+  for (std::size_t k = 1; k < simulation_.size(); ++k) {
+    const std::uint32_t follower = simulation_.id(k);
+    const auto far = [&](std::uint32_t id) {
+      return (simulation_.world().truth_pose(id).p_WM_m - simulation_.world().truth_pose(follower).p_WM_m).norm();
+    };
+    const std::vector<std::uint32_t> chain = members(simulation_.id(0));
+    const std::uint32_t target = far(chain.front()) < far(chain.back()) ? chain.front() : chain.back();
+    const GoalReport report = dock(follower, target, dock_limit_s);
+    if (report.progress != GoalProgress::succeeded) {
+      throw std::runtime_error(report.what + ": " + std::string(to_string(report.progress)) + " " + report.reason);
+    }
+    docking_s_max_ = std::max(docking_s_max_, to_s(report.ended_at - report.accepted_at));
+    if (!wait_until([&] { return agreed(k + 1); }, agree_limit_s)) {
+      throw std::runtime_error(report.what + ": the members did not agree on one chain");
+    }
+  }
+}
+
+void Pilot::separate() {
+  const std::uint32_t first = simulation_.id(0);
+  while (members(first).size() > 1) {
+    const std::vector<std::uint32_t> chain = members(first);
+    const bool at_back = chain.back() != first;
+    expect(operator_.undock(at_back ? chain.back() : chain[0], at_back ? chain[chain.size() - 2] : chain[1]),
+           dock_limit_s);
+    if (!wait_until([&] { return members(first).size() < chain.size(); }, agree_limit_s)) {
+      throw std::runtime_error("after an undocking the chain did not change");
+    }
+  }
 }
 
 }  // namespace eciton::deploy

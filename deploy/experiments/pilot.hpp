@@ -27,15 +27,32 @@ class Pilot {
   void bring_to_hover(const std::vector<double>& heights_m);
   /// Docks, asking again while it is refused for want of zeroing. The report of the last goal.
   GoalReport dock(std::uint32_t follower, std::uint32_t target, double limit_s);
+  /// Docks all modules one by one, each to the nearer end of the chain so far, into one chain that has agreed. Throws
+  /// std::runtime_error naming the docking that failed.
+  void assemble();
+  /// Undocks one by one, always the end that is not the first module. Throws likewise.
+  void separate();
+  /// Runs until the goal has succeeded; throws std::runtime_error naming it otherwise.
+  void expect(std::uint64_t goal, double limit_s) { expect_success({goal}, limit_s); }
+
+  /// The longest docking of `assemble`, from the accepted goal to its end.
+  double docking_s_max() const { return docking_s_max_; }
+
+  /// Members of the chain that a module flies in, in its order; itself when it flies alone.
+  std::vector<std::uint32_t> members(std::uint32_t id) const;
+  /// Of the chain; number (n + 1) / 2, counted from 1.
+  std::uint32_t base(std::uint32_t id) const;
 
   Operator& op() { return operator_; }
   const KnownFleet& fleet() const { return operator_.fleet(); }
 
  private:
+  bool agreed(std::size_t members) const;
   void expect_success(const std::vector<std::uint64_t>& goals, double limit_s);
 
   Simulation& simulation_;
   Operator operator_;
+  double docking_s_max_ = 0;
 };
 
 }  // namespace eciton::deploy

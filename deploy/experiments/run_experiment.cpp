@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "deploy/experiments/branch.hpp"
 #include "deploy/experiments/experiment.hpp"
 
 namespace eciton::deploy {
@@ -30,11 +31,11 @@ void write_all(int fd, const std::string& text) {
   }
 }
 
-/// In the child: the trial's figures, or what went wrong, as JSON. Doubles survive to the bit.
-std::string run_to_text(const Experiment& experiment, const ExperimentConfig& config, std::uint32_t trial) {
+/// In the child: the figures, or what went wrong, as JSON. Doubles survive to the bit.
+std::string run_to_text(const std::function<Figures()>& run) {
   Json out;
   try {
-    const Figures figures = experiment.run_trial(config, trial);
+    const Figures figures = run();
     out["metrics"] = figures.metrics;
     out["series"] = figures.series;
     for (const Still& still : figures.stills) {
@@ -48,7 +49,7 @@ std::string run_to_text(const Experiment& experiment, const ExperimentConfig& co
   return out.dump();
 }
 
-Worker start(const Experiment& experiment, const ExperimentConfig& config, std::uint32_t trial) {
+Worker start(const std::function<Figures()>& run, std::uint32_t trial) {
   int ends[2];
   if (::pipe(ends) != 0) throw std::runtime_error("no pipe for a trial's process: too many open files");
   std::fflush(nullptr);
@@ -60,7 +61,7 @@ Worker start(const Experiment& experiment, const ExperimentConfig& config, std::
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);  // it died before the call above
     ::close(ends[0]);
-    write_all(ends[1], run_to_text(experiment, config, trial));
+    write_all(ends[1], run_to_text(run));
     ::_exit(0);
   }
   ::close(ends[1]);
@@ -94,8 +95,12 @@ Figures finish(const Worker& worker) {
 
 }  // namespace
 
+Figures only_trial(const std::vector<Figures>& trials) { return trials.front(); }
+
 const std::vector<Experiment>& experiments() {
-  static const std::vector<Experiment> all{hover_experiment, docking_experiment};
+  static const std::vector<Experiment> all{hover_experiment, tracking_experiment, docking_experiment,
+                                           morph_experiment, ablation_experiment, scaling_experiment,
+                                           wind_experiment,  silence_experiment,  forest_experiment};
   return all;
 }
 
@@ -107,13 +112,24 @@ std::uint64_t trial_seed(std::uint64_t seed, std::uint32_t trial) {
   return z ^ (z >> 31);
 }
 
+std::uint32_t trials_of(const Experiment& experiment, const ExperimentConfig& config) {
+  if (experiment.has_trials) return config.trials;
+  return experiment.runs != nullptr ? experiment.runs(config) : 1;
+}
+
+Figures in_a_branch(const std::function<Figures()>& run) { return finish(start(run, 0)); }
+
 Figures run_experiment(const Experiment& experiment, const ExperimentConfig& config, std::uint32_t jobs,
                        const std::function<void(std::uint32_t)>& progress) {
-  std::vector<Figures> results(config.trials);
+  const std::uint32_t trials = trials_of(experiment, config);
+  std::vector<Figures> results(trials);
   std::vector<Worker> running;
   std::uint32_t next = 0, finished = 0;
-  while (finished < config.trials) {
-    while (next < config.trials && running.size() < jobs) running.push_back(start(experiment, config, next++));
+  while (finished < trials) {
+    while (next < trials && running.size() < jobs) {
+      running.push_back(start([&, trial = next] { return experiment.run_trial(config, trial); }, next));
+      ++next;
+    }
     // The oldest first: trials take about the same time.
     results[running.front().trial] = finish(running.front());
     running.erase(running.begin());

@@ -28,6 +28,17 @@ std::string words(const char* verb, std::uint32_t a, std::uint32_t b) {
 constexpr Duration start_expired = std::chrono::seconds(2);
 constexpr std::size_t joints_of_a_member = 2;
 
+/// When a goal says that it begins; long ago when it does not.
+template <class Message>
+TimePoint start_of(const Message& message) {
+  return std::visit(
+      [](const auto& m) {
+        if constexpr (requires { m.start_ns; }) return from_ns(m.start_ns);
+        return TimePoint{};
+      },
+      message);
+}
+
 }  // namespace
 
 std::string_view to_string(GoalProgress progress) {
@@ -192,6 +203,7 @@ void Operator::answer(Goal& goal, const msg::GoalStatus& status) {
   report.reason = reason;
   const TimePoint stamp = from_ns(status.stamp_ns);
   if (report.accepted_at == TimePoint{}) report.accepted_at = stamp;
+  report.starts_at = std::max(start_of(goal.message), report.accepted_at);
   if (is_over(report.progress)) report.ended_at = stamp;
 }
 

@@ -37,6 +37,7 @@ struct GoalReport {
   GoalProgress progress = GoalProgress::unsent;
   std::string reason;  // of a refusal or an abortion; or what an unsent goal waits for
   std::uint32_t sent = 0;
+  TimePoint starts_at{};    // not before it: what the goal says, or when it was accepted
   TimePoint accepted_at{};  // by the module's stamps
   TimePoint ended_at{};
 };

@@ -66,14 +66,14 @@ const Wrench& ContactWrenchLaw::update(std::span<const ChainMember> members, std
   if (config_.law == ContactLaw::local) {
     const double rate_1_s =
         std::min(config_.observer_gain_1_s / 3, config_.bending_rate_1_s / static_cast<double>(n));
-    add(local_step(members, own, desired_W) * (rate_1_s * std::clamp(dt_s, 0.0, 0.1)));
+    add(local_step(members, own, desired_W) * (config_.sign * rate_1_s * std::clamp(dt_s, 0.0, 0.1)));
   } else {
     paper_wait_s_ += dt_s;
     if (paper_wait_s_ >= config_.paper_period_s - 1e-9) {
       paper_wait_s_ = 0;
       // Contact wrenches towards a silent member are guesses: trusted by as much as it is fresh.
       const double gamma = config_.paper_gain / std::exp2(static_cast<double>(n) - 2);
-      add(paper_step(members, own, desired_W) * (gamma * peers));
+      add(paper_step(members, own, desired_W) * (config_.sign * gamma * peers));
     }
   }
   feed_forward_W_ = feed_forward_W_ * std::exp(-(1 - peers) * dt_s / config_.fade_time_constant_s);

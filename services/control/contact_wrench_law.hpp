@@ -19,9 +19,10 @@ struct ContactWrenchLawConfig {
   double bending_rate_1_s = 14;   // and this by the number of members: above it the chain's bending is excited
   double paper_period_s = 0.1;    // the paper's law limit-cycles from N = 3 when applied at 100 Hz
   double paper_gain = 0.4;        // gamma for N = 2, halved for each further member
+  double sign = 1;                // -1: against all sense, for an experiment that must fail
   double force_N_max = 15;        // of the feed-forward, per axis
   double moment_Nm_max = 3;
-  double fade_time_constant_s = 1.0;  // of the feed-forward, when all peers are gone
+  double fade_time_constant_s = 5.0;  // of the feed-forward, when all peers are gone
   robot::FreshnessConfig freshness{};
 };
 

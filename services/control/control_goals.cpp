@@ -36,7 +36,7 @@ void ControlService::take_goals(TimePoint now) noexcept {
   while (const auto sample = path_goal_.take()) take_path_goal(sample->value, now);
   while (const auto sample = morph_goal_.take()) take_morph_goal(sample->value, now);
   while (const auto sample = contact_goal_.take()) take_contact_goal(sample->value, now);
-  while (const auto sample = docking_reference_.take()) take_docking_reference(sample->value, now - sample->age);
+  while (const auto sample = docking_reference_.take()) take_docking_reference(sample->value, now - sample->age, now);
 }
 
 bool ControlService::concerns_us(std::uint32_t module_id) const {
@@ -92,6 +92,7 @@ void ControlService::answer_flight(std::uint32_t module_id, std::uint64_t correl
 
 void ControlService::begin(const msg::FlightGoal& goal, TimePoint now) noexcept {
   const double now_s = seconds(now);
+  see_base(now);
   const robot::Pose X_goal{robot::vector(goal.p_WM_m), robot::rotation(goal.q_WM)};
   switch (goal.action) {
     case msg::FlightAction::takeoff:
@@ -123,6 +124,7 @@ void ControlService::take_path_goal(const msg::PathGoal& goal, TimePoint now) no
   for (std::size_t k = 0; k < goal.waypoints.size(); ++k) {
     waypoints[k] = {robot::vector(goal.waypoints[k].p_WM_m), robot::rotation(goal.waypoints[k].q_WM)};
   }
+  see_base(now);
   reference_.follow(std::span<const robot::Pose>(waypoints).first(goal.waypoints.size()), goal.speed_m_s,
                     start_s(goal.start_ns, now), seconds(now));
 }
@@ -132,6 +134,7 @@ void ControlService::take_morph_goal(const msg::MorphGoal& goal, TimePoint now) 
   answered_morph_ = goal.correlation_id;
   // The joints service of the member it names answers; it comes to the same verdict.
   const std::span<const double> joint_rad(goal.joint_position_rad.data(), goal.joint_position_rad.size());
+  see_base(now);
   static_cast<void>(reference_.morph(joint_rad, goal.rate_rad_s, start_s(goal.start_ns, now), seconds(now)));
 }
 
@@ -157,7 +160,8 @@ void ControlService::take_contact_goal(const msg::ContactGoal& goal, TimePoint n
          now);
 }
 
-void ControlService::take_docking_reference(const msg::DockingReference& reference, TimePoint at) noexcept {
+void ControlService::take_docking_reference(const msg::DockingReference& reference, TimePoint at,
+                                            TimePoint now) noexcept {
   const bool alone = reference.epoch == 0 && reference.module_id == config_.module_id && !in_chain();
   const bool of_chain =
       reference.epoch != 0 && in_chain() && reference.epoch == view_.active_epoch && is_member(reference.module_id);
@@ -170,6 +174,7 @@ void ControlService::take_docking_reference(const msg::DockingReference& referen
   moving.R_WM = robot::rotation(reference.q_WM);
   moving.v_WM = robot::vector(reference.v_WM_m_s);
   moving.w_WM_M = robot::vector(reference.w_WM_M_rad_s);
+  see_base(now);
   reference_.track(moving, seconds(at));
 }
 

@@ -17,6 +17,13 @@ constexpr Duration law_silence = std::chrono::milliseconds(300);  // without an 
 
 robot::Pose pose_of(const msg::ModuleState& s) { return {robot::vector(s.p_WM_m), robot::rotation(s.q_WM)}; }
 
+/// By one state of the 50 a second that cross the radio: a second's worth of them counts.
+void smooth(robot::Pose& X, const robot::Pose& newest) {
+  constexpr double share = 0.02;
+  X.p += share * (newest.p - X.p);
+  X.R = X.R * robot::exp_so3(share * robot::log_so3(X.R.transpose() * newest.R));
+}
+
 }  // namespace
 
 ControlService::ControlService(bus::Participant& ring, const ControlConfig& config, const robot::Airframe& airframe)
@@ -27,7 +34,8 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
             .observer_gain_1_s = config.observer_gain_1_s,
             .bending_rate_1_s = config.local_rate_1_s,
             .paper_period_s = 1 / config.paper_rate_Hz,
-            .paper_gain = config.paper_gain}),
+            .paper_gain = config.paper_gain,
+            .sign = config.law_sign}),
       allocator_(airframe),
       module_state_(ring.create_reader(topics::module_state)),
       joint_state_(ring.create_reader(topics::joint_state)),
@@ -111,6 +119,7 @@ void ControlService::take_state(TimePoint now) noexcept {
       state_at_ = from_ns(s.stamp_ns);
     } else if (Peer* p = peer(s.module_id)) {
       p->state = s;
+      if (in_chain() && s.module_id == view_.base_id) smooth(X_WM_base_, pose_of(s));
     }
   }
   // States come at the IMU's pace; between them the module goes on as it was going.
@@ -163,9 +172,10 @@ void ControlService::take_chain(TimePoint now) noexcept {
     if (view.module_id != config_.module_id || !view.active || view.active_epoch == view_.active_epoch) continue;
     const double now_s = seconds(now);
     law_.reset();
+    common_W_ = {};
     if (view.members.size() > 1) {
       enter_chain(view, now);
-      pose_control_.set_gains(gains_assembled());
+      pose_control_.set_gains(between(gains_assembled(), gains_free(), config_.stiffness));
     } else {
       if (in_chain()) reference_.leave(now_s);
       pose_control_.set_gains(gains_free());
@@ -192,8 +202,14 @@ void ControlService::enter_chain(const msg::ChainView& view, TimePoint now) noex
     place.base = i;
     if (other != nullptr && other->state.module_id == id) X_WM_base = pose_of(other->state);
   }
+  X_WM_base_ = X_WM_base;
   reference_.join(place, std::span<const double>(joint_rad).first(place.members * joints_each), X_WM_base,
                   seconds(now));
+}
+
+void ControlService::see_base(TimePoint now) noexcept {
+  // While it stands, its integral keeps the base at its reference: smoothed, its states say where that is.
+  if (in_chain()) reference_.see_base(X_WM_base_, seconds(now));
 }
 
 void ControlService::take_wrenches(TimePoint now) noexcept {
@@ -204,27 +220,34 @@ void ControlService::take_wrenches(TimePoint now) noexcept {
   }
   while (const auto sample = contact_wrench_.take()) {
     const msg::ContactWrench& w = sample->value;
-    if (w.module_id != config_.module_id || !in_chain() || w.epoch != view_.active_epoch) continue;
-    std::array<ChainMember, robot::members_max> members;
-    std::size_t own = 0;
-    for (std::size_t k = 0; k < w.members.size(); ++k) {
-      const msg::MemberWrench& m = w.members[k];
-      if (m.module_id == config_.module_id) own = k;
-      members[k] = {.d_W = {robot::vector(m.d_force_W_N), robot::vector(m.d_moment_W_Nm)},
-                    .contact_W = {robot::vector(m.link_force_W_N), robot::vector(m.link_moment_W_Nm)},
-                    .r_W = robot::vector(m.r_W_m),
-                    .link_W = robot::vector(m.link_W_m),
-                    .age_s = m.age_s};
-    }
-    const double dt_s = std::clamp(to_s(now - law_updated_), 0.0, 0.1);
-    law_updated_ = now;
-    std::array<robot::Wrench, robot::members_max> desired_W;
-    law_.update(std::span<const ChainMember>(members).first(w.members.size()), own, desired_contacts(desired_W, now),
-                dt_s);
+    if (w.module_id == config_.module_id && in_chain() && w.epoch == view_.active_epoch) take_contact_wrench(w, now);
   }
   if (in_chain() && now - law_updated_ > law_silence) {
     law_.fade(to_s(now - last_step_));
+    common_W_ = {};
   }
+}
+
+void ControlService::take_contact_wrench(const msg::ContactWrench& w, TimePoint now) noexcept {
+  std::array<ChainMember, robot::members_max> members;
+  std::size_t own = 0;
+  for (std::size_t k = 0; k < w.members.size(); ++k) {
+    const msg::MemberWrench& m = w.members[k];
+    if (m.module_id == config_.module_id) own = k;
+    members[k] = {.d_W = {robot::vector(m.d_force_W_N), robot::vector(m.d_moment_W_Nm)},
+                  .contact_W = {robot::vector(m.link_force_W_N), robot::vector(m.link_moment_W_Nm)},
+                  .r_W = robot::vector(m.r_W_m),
+                  .link_W = robot::vector(m.link_W_m),
+                  .age_s = m.age_s};
+  }
+  // What is left of our external wrench without the contact.
+  const double heard = static_cast<double>(w.fresh) / static_cast<double>(w.members.size());
+  common_W_ = (external_W_ - members[own].d_W) * heard;
+  const double dt_s = std::clamp(to_s(now - law_updated_), 0.0, 0.1);
+  law_updated_ = now;
+  std::array<robot::Wrench, robot::members_max> desired_W;
+  law_.update(std::span<const ChainMember>(members).first(w.members.size()), own, desired_contacts(desired_W, now),
+              dt_s);
 }
 
 std::span<const robot::Wrench> ControlService::desired_contacts(std::span<robot::Wrench> room,
@@ -276,13 +299,7 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   if (mode_ == FlightMode::failsafe) return;
   const double dt_s = first_step_ ? config_.period_s : std::clamp(to_s(now - last_step_), 1e-4, 0.02);
   const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
-  const robot::Wrench feed_forward_W =
-      in_chain()
-          ? law_.feed_forward_W()
-          : feedback_.update(config_.disturbance_feedback ? external_W_ : robot::Wrench{},
-                             feedback_phase(docking_.phase != msg::DockingPhase::idle, docking_.commanded_gap_m,
-                                            docking_.declared_by != msg::DeclaredBy::nothing),
-                             dt_s);
+  const robot::Wrench feed_forward_W = feed_forward(dt_s);
   const robot::Wrench demanded_B =
       pose_control_.update({.state = motion_,
                             .reference = reference_.at(seconds(now)),
@@ -303,6 +320,17 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   for (const robot::RotorOutput& rotor : allocation_.outputs())
     out.rotors.push_back({rotor.thrust_N, rotor.gimbal_rad});
   rotor_command_.write(out);
+}
+
+robot::Wrench ControlService::feed_forward(double dt_s) noexcept {
+  if (!config_.disturbance_feedback) return in_chain() ? law_.feed_forward_W() : robot::Wrench{};
+  // In a chain only what acts on all alike is a disturbance; the rest is contact, and the law's.
+  if (in_chain()) return law_.feed_forward_W() + feedback_.update(common_W_, FeedbackPhase::follow, dt_s);
+  // Alone the attitude's own integral copes with moments.
+  return feedback_.update({external_W_.force, robot::Vector3::Zero()},
+                          feedback_phase(docking_.phase != msg::DockingPhase::idle, docking_.commanded_gap_m,
+                                         docking_.declared_by != msg::DeclaredBy::nothing),
+                          dt_s);
 }
 
 void ControlService::write_idle(TimePoint now) noexcept {

@@ -27,6 +27,8 @@ struct ControlConfig {
   double paper_gain = 0.4;     // of the paper's law: gamma at N = 2, halved for each further member
   double paper_rate_Hz = 10;   // and how often it is applied
   double local_rate_1_s = 14;  // of the local law, by the number of members; at most a third of the observer's gain
+  double stiffness = 0;        // of the pose control in a chain: 0 gentle, 1 as stiff as in free flight
+  double law_sign = 1;         // -1: an experiment's control, which must fail
   bool disturbance_feedback = true;  // the observer's wrench fed back in free flight
   double takeoff_m_s = 0.5;
   double landing_m_s = 0.3;
@@ -40,6 +42,7 @@ struct ControlConfig {
     v("paper_gain", paper_gain, in_range(0.001, 1));
     v("paper_rate_Hz", paper_rate_Hz, in_range(1, 100));
     v("local_rate_1_s", local_rate_1_s, in_range(0.1, 100));
+    v("stiffness", stiffness, in_range(0, 1));
     v("disturbance_feedback", disturbance_feedback);
     v("takeoff_m_s", takeoff_m_s, in_range(0.05, 2));
     v("landing_m_s", landing_m_s, in_range(0.05, 1));
@@ -86,7 +89,7 @@ class ControlService final : public runtime::Service {
   void take_path_goal(const msg::PathGoal& goal, TimePoint now) noexcept;
   void take_morph_goal(const msg::MorphGoal& goal, TimePoint now) noexcept;
   void take_contact_goal(const msg::ContactGoal& goal, TimePoint now) noexcept;
-  void take_docking_reference(const msg::DockingReference& reference, TimePoint at) noexcept;
+  void take_docking_reference(const msg::DockingReference& reference, TimePoint at, TimePoint now) noexcept;
   bool concerns_us(std::uint32_t module_id) const;
   double start_s(std::int64_t start_ns, TimePoint now) const;
   FlightDecision decide_goal(const msg::FlightGoal& goal) const noexcept;
@@ -96,12 +99,14 @@ class ControlService final : public runtime::Service {
   void begin(const msg::FlightGoal& goal, TimePoint now) noexcept;
 
   void enter_chain(const msg::ChainView& view, TimePoint now) noexcept;
+  void see_base(TimePoint now) noexcept;
   /// Contact wrenches asked for, each turned into world axes by its member's reference.
   std::span<const robot::Wrench> desired_contacts(std::span<robot::Wrench> room, TimePoint now) const noexcept;
   void judge(TimePoint now) noexcept;
   void follow_mode(TimePoint now) noexcept;
   void write_rotors(TimePoint now) noexcept;
   void write_idle(TimePoint now) noexcept;
+  robot::Wrench feed_forward(double dt_s) noexcept;
 
   bool in_chain() const { return reference_.in_chain(); }
   bool is_member(std::uint32_t module_id) const;
@@ -133,12 +138,16 @@ class ControlService final : public runtime::Service {
   ModuleMotion motion_;  // extrapolated to now
   std::array<double, robot::joints_max> joint_rad_{};
   robot::Wrench external_W_;
+  robot::Wrench common_W_;  // our share of what acts on the whole chain, weighed with the members that are fresh
+  robot::Pose X_WM_base_;   // where the base of the chain stands, smoothed
   bool duplicate_id_ = false;
   msg::DockingState docking_;
   msg::ChainView view_;  // the active one
   robot::Allocation allocation_;
 
   // Of the other members: where they are and how their joints stand, for joining.
+  void take_contact_wrench(const msg::ContactWrench& w, TimePoint now) noexcept;
+
   struct Peer {
     std::uint32_t module_id = 0;
     msg::ModuleState state;

@@ -18,9 +18,7 @@ robot::Wrench DisturbanceFeedback::update(const robot::Wrench& external_W, Feedb
   if (phase == FeedbackPhase::follow) {
     const double share = 1 - std::exp(-config_.rate_1_s * dt_s);
     held_W_.force += share * (limited(external_W.force, config_.force_N_max) - held_W_.force);
-    if (config_.feed_moment) {
-      held_W_.moment += share * (limited(external_W.moment, config_.moment_Nm_max) - held_W_.moment);
-    }
+    held_W_.moment += share * (limited(external_W.moment, config_.moment_Nm_max) - held_W_.moment);
   } else if (phase == FeedbackPhase::decay) {
     held_W_ = held_W_ * std::exp(-dt_s / config_.decay_time_constant_s);
   }

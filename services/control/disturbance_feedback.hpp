@@ -10,9 +10,8 @@ struct DisturbanceFeedbackConfig {
   double rate_1_s = 20;
   double freeze_gap_m = 0.05;  // commanded gap below which it freezes
   double decay_time_constant_s = 1.0;
-  double force_N_max = 12;   // per axis
-  bool feed_moment = false;  // the attitude's own integral copes with moments
-  double moment_Nm_max = 1;
+  double force_N_max = 12;  // per axis
+  double moment_Nm_max = 2;
 };
 
 enum class FeedbackPhase {

@@ -59,9 +59,13 @@ void FlightReference::join(const ChainPlace& place, std::span<const double> join
                            double now_s) {
   const PoseReference own = at(now_s);
   in_chain_ = true;
-  kind_ = Kind::motion;
   place_ = place;
   joints_.reset(joint_rad, place.base);
+  stand_by(own, place.own == place.base ? Pose{own.p_WM, own.R_WM} : X_WM_base, now_s);
+}
+
+void FlightReference::stand_by(const PoseReference& own, const Pose& X_WM_base, double now_s) {
+  kind_ = Kind::motion;
   motion_ = PoseMotion(X_WM_base);
   offset_p_.setZero();
   offset_R_.setIdentity();
@@ -70,6 +74,11 @@ void FlightReference::join(const ChainPlace& place, std::span<const double> join
   const PoseReference shared = own_part(now_s);
   offset_p_ = own.p_WM - shared.p_WM;
   offset_R_ = shared.R_WM.transpose() * own.R_WM;
+}
+
+void FlightReference::see_base(const Pose& X_WM_base, double now_s) {
+  if (!in_chain_ || place_.own == place_.base || !at_rest(now_s) || !joints_.finished(now_s)) return;
+  stand_by(at(now_s), X_WM_base, now_s);
 }
 
 void FlightReference::leave(double now_s) {

@@ -43,9 +43,12 @@ class FlightReference {
   /// Straight down from the present reference, for ever.
   void descend(double speed_m_s, double now_s);
 
-  /// Into a chain, without a jump: from the present reference, which fixes where this module sees the base,
-  /// given the chain's joint angles (member by member).
+  /// Into a chain, without a jump: from the present reference, given the chain's joint angles (member by member).
+  /// The base's reference leads; the others take `X_WM_base`, where they see the base, for it.
   void join(const ChainPlace& place, std::span<const double> joint_rad, const robot::Pose& X_WM_base, double now_s);
+  /// At rest in a chain, before it moves: takes what a member has since learnt of where the base stands, so that all
+  /// move by the same amount. The own reference stays. Nothing while something moves, and for the base.
+  void see_base(const robot::Pose& X_WM_base, double now_s);
   /// In a chain: the joints move and the reference follows. A refusal changes nothing.
   std::optional<robot::LimitFault> morph(std::span<const double> joint_rad, double rate_rad_s, double start_s,
                                          double now_s) {
@@ -72,6 +75,7 @@ class FlightReference {
   enum class Kind { motion, path, track, descend };
 
   robot::PoseReference leading(double now_s) const;
+  void stand_by(const robot::PoseReference& own, const robot::Pose& X_WM_base, double now_s);
   robot::PoseReference own_part(double now_s) const;
 
   robot::Airframe airframe_;

@@ -12,12 +12,6 @@ PoseGains gains(double kp, double ki, double kd, double ap, double ai, double ad
   return {all(kp), all(ki), all(kd), all(ap), all(ai), all(ad)};
 }
 
-PoseGains between(const PoseGains& a, const PoseGains& b, double s) {
-  const auto mix = [s](const Vector3& x, const Vector3& y) { return Vector3(x + s * (y - x)); };
-  return {mix(a.kp_1_s2, b.kp_1_s2), mix(a.ki_1_s3, b.ki_1_s3), mix(a.kd_1_s, b.kd_1_s),
-          mix(a.ap_1_s2, b.ap_1_s2), mix(a.ai_1_s3, b.ai_1_s3), mix(a.ad_1_s, b.ad_1_s)};
-}
-
 Vector3 shortened(const Vector3& v, double norm_max) {
   const double norm = v.norm();
   return norm > norm_max ? Vector3(v * (norm_max / norm)) : v;
@@ -34,6 +28,12 @@ void integrate(Vector3& integral, const Vector3& gain, const Vector3& error, dou
 }
 
 }  // namespace
+
+PoseGains between(const PoseGains& a, const PoseGains& b, double s) {
+  const auto mix = [s](const Vector3& x, const Vector3& y) { return Vector3(x + s * (y - x)); };
+  return {mix(a.kp_1_s2, b.kp_1_s2), mix(a.ki_1_s3, b.ki_1_s3), mix(a.kd_1_s, b.kd_1_s),
+          mix(a.ap_1_s2, b.ap_1_s2), mix(a.ai_1_s3, b.ai_1_s3), mix(a.ad_1_s, b.ad_1_s)};
+}
 
 PoseGains gains_assembled() { return gains(6, 1, 4.5, 40, 4, 12); }
 PoseGains gains_free() { return gains(20, 2, 8, 60, 4, 14); }

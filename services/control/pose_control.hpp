@@ -27,6 +27,8 @@ struct PoseGains {
 /// 30 ms (thrust) and 40 ms (gimbals).
 PoseGains gains_assembled();
 PoseGains gains_free();
+/// `a` at 0, `b` at 1.
+PoseGains between(const PoseGains& a, const PoseGains& b, double share);
 
 struct PoseControlConfig {
   PoseGains gains = gains_free();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/robot/common_disturbance.hpp"
+
 namespace eciton::estimation {
 
 using robot::Vector3;
@@ -21,24 +23,20 @@ ChainWrench solve_contacts(std::span<const MemberWrench> members, std::span<Memb
     contacts[k].freshness = m.known ? robot::freshness(m.age_s, config) : 0;
     if (contacts[k].freshness >= 1) ++out.fresh;
     weight += contacts[k].freshness;
-    out.mean_r_W += m.r_W / static_cast<double>(count);
     const bool last = k + 1 == count;
     contacts[k].link_W = last ? m.port_to_next_W : Vector3(0.5 * (m.port_to_next_W + members[k + 1].port_to_last_W));
   }
   if (!out.complete || weight < 1e-9) return out;
 
-  for (std::size_t k = 0; k < count; ++k) {
-    out.common_W.force += contacts[k].freshness / weight * members[k].external_W.force;
-  }
-  for (std::size_t k = 0; k < count; ++k) {
-    const Wrench& W = members[k].external_W;
-    const Vector3 lever = (members[k].r_W - out.mean_r_W).cross(W.force - out.common_W.force);
-    out.common_W.moment += contacts[k].freshness / weight * (W.moment + lever);
-  }
+  const robot::CommonDisturbance common(count, [&](std::size_t k) {
+    return robot::ChainLoad{members[k].external_W, members[k].r_W, contacts[k].freshness};
+  });
+  out.mean_r_W = common.mean_r_W();
+  out.common_W = {common.force_W(), common.moment_W()};
   Wrench sum;  // about mean_r_W
   for (std::size_t k = 0; k < count; ++k) {
     MemberContact& m = contacts[k];
-    m.d_W = (members[k].external_W - out.common_W) * m.freshness;
+    m.d_W = (members[k].external_W - common.share(members[k].r_W)) * m.freshness;
     sum += robot::shift(m.d_W, members[k].r_W - out.mean_r_W);
     if (k + 1 < count) m.contact_W = -robot::shift(sum, out.mean_r_W - m.link_W);
   }
