@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t modules_most = 8;
 constexpr double preload_N = 3, preload_Nm = 0.3;
 constexpr double settled_N = 0.3, settled_Nm = 0.05;
-constexpr double preload_s = 8;
+constexpr double preload_s = 4;
 constexpr double watch_local_s = 12, watch_paper_s = 60;
 constexpr double path_m = 0.4, path_speed_m_s = 0.3, path_limit_s = 60;
 

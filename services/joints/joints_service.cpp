@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/robot/arrays.hpp"
+
 namespace eciton::joints {
 namespace {
 
@@ -20,12 +22,18 @@ JointsService::JointsService(bus::Participant& ring, const JointsConfig& config,
       morph_goal_(ring.create_reader(topics::morph_goal)),
       chain_view_(ring.create_reader(topics::chain_view)),
       joint_state_(ring.create_reader(topics::joint_state)),
+      module_state_(ring.create_reader(topics::module_state)),
       joint_command_(ring.create_writer(topics::joint_command)),
-      goal_status_(ring.create_writer(topics::goal_status)) {}
+      goal_status_(ring.create_writer(topics::goal_status)) {
+  relief_.fill(JointRelief(config.relief));
+}
 
 void JointsService::step(TimePoint now) noexcept {
   if (first_step_) begin(now);
   first_step_ = false;
+  while (const auto state = module_state_.take()) {
+    if (state->value.module_id == config_.module_id) R_WM_ = robot::rotation(state->value.q_WM);
+  }
   take_joints(now);
   take_chain(now);
   take_goals(now);
@@ -151,18 +159,33 @@ void JointsService::take_goals(TimePoint now) noexcept {
 
 void JointsService::write(TimePoint now) noexcept {
   const std::size_t each = airframe_.joints.size();
+  const double dt_s = std::clamp(to_s(now - last_step_), 0.0, 0.05);
   msg::JointCommand out;
   out.module_id = config_.module_id;
   out.stamp_ns = to_ns(now);
   for (std::size_t k = 0; k < each; ++k) {
     const robot::ScalarMotion joint = trajectory_.at(place_ * each + k, seconds(now));
-    out.joints.push_back({joint.position, joint.velocity, 0});
+    const double give_rad = in_link(k)
+                                ? relief_[k].update(own_.joints[k].torque_Nm -
+                                                        weight_torque_Nm(airframe_.joints[k], joint.position, R_WM_),
+                                                    joint.velocity, dt_s)
+                                : relief_[k].let_go(dt_s);
+    out.joints.push_back({joint.position + give_rad, joint.velocity, 0});
   }
   joint_command_.write(out);
   if (goal_pending_ && trajectory_.finished(seconds(now))) {
     goal_pending_ = false;
     answer(goal_, msg::GoalPhase::succeeded, "", now);
   }
+}
+
+bool JointsService::in_link(std::size_t joint) const {
+  if (!in_chain_) return false;
+  // The male port holds the next member, the female one the member before.
+  return std::any_of(airframe_.ports.begin(), airframe_.ports.end(), [&](const robot::PortGeometry& port) {
+    const bool linked = port.kind == robot::PortKind::male ? place_ + 1 < view_.members.size() : place_ > 0;
+    return linked && static_cast<std::size_t>(port.joint) == joint;
+  });
 }
 
 void JointsService::answer(const msg::MorphGoal& goal, msg::GoalPhase phase, std::string_view reason,

@@ -9,16 +9,23 @@
 #include "core/robot/joint_trajectory.hpp"
 #include "core/runtime/service.hpp"
 #include "idl/topics.hpp"
+#include "services/joints/joint_relief.hpp"
 
 namespace eciton::joints {
 
 struct JointsConfig {
   std::uint32_t module_id = 0;
   double rate_Hz = 100;
+  JointReliefConfig relief;
 
   template <class V>
   void visit_fields(V& v) {
     v("rate_Hz", rate_Hz, in_range(10, 500));
+    v("relief_rate_1_s", relief.rate_1_s, in_range(0, 100));
+    v("stiffness_Nm_rad", relief.stiffness_Nm_rad, in_range(1, 1000));
+    v("friction_Nm_s_rad", relief.friction_Nm_s_rad, in_range(0, 100));
+    v("give_rad", relief.give_rad, in_range(0, 0.2));
+    v("return_time_constant_s", relief.return_time_constant_s, in_range(0.05, 100));
   }
 };
 
@@ -31,7 +38,7 @@ class JointsService final : public runtime::Service {
     return runtime::every(from_s(1 / config_.rate_Hz), runtime::Phase::coordinate);
   }
   void step(TimePoint now) noexcept override;
-  std::uint32_t state_version() const noexcept override { return 1; }
+  std::uint32_t state_version() const noexcept override { return 2; }
   void save_state(runtime::StateWriter& writer) const noexcept override { visit_state(*this, writer); }
   void load_state(runtime::StateReader& reader) noexcept override;
 
@@ -39,9 +46,10 @@ class JointsService final : public runtime::Service {
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
     v(self.last_step_, self.epoch_, self.trajectory_, self.place_, self.measured_, self.in_chain_, self.view_,
-      self.goal_, self.goal_pending_, self.answered_);
+      self.goal_, self.goal_pending_, self.answered_, self.relief_);
   }
 
+  bool in_link(std::size_t joint) const;
   double seconds(TimePoint t) const { return to_s(t - epoch_); }
   void begin(TimePoint now) noexcept;
   void take_joints(TimePoint now) noexcept;
@@ -65,6 +73,8 @@ class JointsService final : public runtime::Service {
   msg::ChainView view_;                                      // the active one
   std::array<msg::JointState, robot::members_max> heard_{};  // peers' joints
   msg::JointState own_;
+  robot::Matrix3 R_WM_ = robot::Matrix3::Identity();
+  std::array<JointRelief, robot::joints_max> relief_;
   msg::MorphGoal goal_;
   bool goal_pending_ = false;
   std::uint64_t answered_ = 0;
@@ -72,6 +82,7 @@ class JointsService final : public runtime::Service {
   bus::Reader<msg::MorphGoal> morph_goal_;
   bus::Reader<msg::ChainView> chain_view_;
   bus::Reader<msg::JointState> joint_state_;
+  bus::Reader<msg::ModuleState> module_state_;
   bus::Writer<msg::JointCommand> joint_command_;
   bus::Writer<msg::GoalStatus> goal_status_;
 };
