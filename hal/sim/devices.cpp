@@ -129,10 +129,10 @@ void SimImu::deactivate() noexcept { lifecycle_.deactivate(); }
 
 Io SimImu::read(ImuReading& reading) noexcept {
   if (!lifecycle_.readable()) return Io::error;
-  const ImuReading& newest = board_.sensors().imu;
-  if (board_.frames_received() == 0 || newest.stamp == stamp_read_) return Io::nothing_new;
-  stamp_read_ = newest.stamp;
-  reading = newest;
+  const SensorFrame& frame = board_.sensors();
+  if (frame.imu_count == samples_read_) return Io::nothing_new;
+  samples_read_ = frame.imu_count;
+  reading = frame.imu;
   return Io::ok;
 }
 
@@ -146,8 +146,8 @@ void SimPoseSource::deactivate() noexcept { lifecycle_.deactivate(); }
 Io SimPoseSource::read(PoseReading& reading) noexcept {
   if (!lifecycle_.readable()) return Io::error;
   const SensorFrame& frame = board_.sensors();
-  if (!frame.has_pose || frame.pose.stamp == stamp_read_) return Io::nothing_new;
-  stamp_read_ = frame.pose.stamp;
+  if (frame.pose_count == samples_read_) return Io::nothing_new;
+  samples_read_ = frame.pose_count;
   reading = frame.pose;
   return Io::ok;
 }

@@ -92,7 +92,7 @@ class SimImu : public Imu {
  private:
   Board& board_;
   Lifecycle lifecycle_;
-  TimePoint stamp_read_ = TimePoint::min();
+  std::uint64_t samples_read_ = 0;
 };
 
 class SimPoseSource : public PoseSource {
@@ -107,7 +107,7 @@ class SimPoseSource : public PoseSource {
  private:
   Board& board_;
   Lifecycle lifecycle_;
-  TimePoint stamp_read_ = TimePoint::min();
+  std::uint64_t samples_read_ = 0;
 };
 
 }  // namespace eciton::hal::sim

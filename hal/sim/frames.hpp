@@ -21,9 +21,10 @@ struct SensorFrame {
   std::uint32_t rotor_count = 0;
   std::uint32_t joint_count = 0;
   std::uint32_t port_count = 0;
-  ImuReading imu;         // the newest sample
-  bool has_pose = false;  // false until the first measurement has arrived
-  PoseReading pose;       // the newest that has arrived, stamped when it was measured
+  std::uint64_t imu_count = 0;   // samples so far: one more, and `imu` is new, whatever its stamp says
+  std::uint64_t pose_count = 0;  // likewise; 0 until the first measurement has arrived
+  ImuReading imu;                // the newest sample
+  PoseReading pose;              // the newest that has arrived, stamped when it was measured
   std::array<RotorReading, max_rotors> rotors{};
   std::array<JointReading, max_joints> joints{};
   std::array<LatchReading, max_ports> latches{};

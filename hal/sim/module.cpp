@@ -25,9 +25,11 @@ SimModule::SimModule(const WorldConfig& config, const robot::Airframe& airframe,
       reading_config_(config.readings),
       noise_(config.noise),
       reading_random_(config.seed, start.id, Purpose::readings),
-      imu_(config.imu, config.noise, Random(config.seed, start.id, Purpose::imu)),
+      imu_(config.imu, config.noise, Random(config.seed, start.id, Purpose::imu),
+           Random(config.seed, start.id, Purpose::imu_fault)),
       pose_(config.pose_sensor(), source_kind(config), config.noise, mismatch.attitude_bias_rad,
-            Random(config.seed, start.id, Purpose::pose), Random(config.seed, start.id, Purpose::drift)) {
+            Random(config.seed, start.id, Purpose::pose), Random(config.seed, start.id, Purpose::drift),
+            Random(config.seed, start.id, Purpose::pose_fault)) {
   for (const robot::RotorGeometry& rotor : airframe.rotors) {
     rotors_.emplace_back(rotor, start.hovering ? airframe.hover_thrust_N() : 0.0);
   }
@@ -123,10 +125,19 @@ void SimModule::fill(SensorFrame& frame) const {
   frame.joint_count = static_cast<std::uint32_t>(joints_.size());
   frame.port_count = static_cast<std::uint32_t>(airframe_->ports.size());
   frame.imu = imu_.reading();
-  frame.has_pose = pose_.has_reading();
+  frame.imu_count = imu_.count();
+  frame.pose_count = pose_.count();
   frame.pose = pose_.reading();
   frame.rotors = rotor_readings_;
   frame.joints = joint_readings_;
+}
+
+void SimModule::break_sensor(SimSensor sensor, const SensorFault& fault, TimePoint now) {
+  if (sensor == SimSensor::imu) {
+    imu_.set_fault(fault, now);
+  } else {
+    pose_.set_fault(fault, now);
+  }
 }
 
 }  // namespace eciton::hal::sim

@@ -49,6 +49,7 @@ class SimModule {
   /// The first samples, from the accelerations of the state the world begins with.
   void start_sensors(TimePoint now, const mjData* d);
   void fill(SensorFrame& frame) const;
+  void break_sensor(SimSensor sensor, const SensorFault& fault, TimePoint now);
 
   UnitGust gust;
   UnitGust wake;

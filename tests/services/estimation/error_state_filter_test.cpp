@@ -216,14 +216,16 @@ TEST(ErrorStateFilterTest, RefusesAndCountsWhatItCannotUse) {
   PoseMeasurement skewed = pose_at(399, Vector3::Zero());
   skewed.X_WB.R(0, 0) = 2;
   EXPECT_EQ(filter.update(skewed), PoseVerdict::invalid);
-  EXPECT_FALSE(filter.update(ImuSample{399 * 2'000'000ll, {0, 0, 9.81}, Vector3::Zero()}));
-  EXPECT_FALSE(
-      filter.update(ImuSample{401 * 2'000'000ll, {0, 0, std::numeric_limits<double>::infinity()}, Vector3::Zero()}));
+  EXPECT_EQ(filter.update(ImuSample{399 * 2'000'000ll, {0, 0, 9.81}, Vector3::Zero()}), ImuVerdict::repeated);
+  EXPECT_EQ(filter.update(ImuSample{398 * 2'000'000ll, {0, 0, 9.81}, Vector3::Zero()}), ImuVerdict::backward);
+  EXPECT_EQ(
+      filter.update(ImuSample{401 * 2'000'000ll, {0, 0, std::numeric_limits<double>::infinity()}, Vector3::Zero()}),
+      ImuVerdict::invalid);
   const FilterCounters& c = filter.counters();
   EXPECT_EQ(c.too_old, 1u);
   EXPECT_EQ(c.too_new, 1u);
   EXPECT_EQ(c.invalid, 2u);
-  EXPECT_EQ(c.imu_refused, 2u);
+  EXPECT_EQ(c.imu_refused, 3u);
 }
 
 TEST(ErrorStateFilterTest, AGapInTheImuForcesANewStart) {
