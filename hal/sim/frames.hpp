@@ -34,10 +34,11 @@ struct SensorFrame {
 enum class LatchCommand : std::uint8_t { hold, engage, release };
 
 struct ActuatorFrame {
-  TimePoint stamp;              // of the sensor frame acted on
-  bool armed = false;           // false: motors run down, whatever the setpoints say
-  bool joints_powered = false;  // false: joints swing freely, braked by their gears
-  std::array<RotorSetpoint, max_rotors> rotors{};
+  TimePoint stamp;                                    // of the sensor frame acted on
+  bool armed = false;                                 // false: motors run down, whatever the setpoints say
+  bool joints_powered = false;                        // false: joints swing freely, braked by their gears
+  std::array<RotorSetpoint, max_rotors> rotors{};     // thrusts as they were asked for: to read along
+  std::array<double, max_rotors> throttle_percent{};  // what the speed controllers get: see core/robot/thrust_map.hpp
   std::array<JointSetpoint, max_joints> joints{};
   std::array<LatchCommand, max_ports> latches{};
 };

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double thrust_share_flying = 0.7;  // of the weight; less: on the floor, or falling
 
+constexpr double pose_silent_s = ErrorStateFilterConfig{}.dead_reckoning_s;
 constexpr double observer_gap_s_max = 0.02;  // longer between two states: only the momentum is taken
 
 bool finite(const msg::ExternalWrench& w) {
@@ -58,6 +59,7 @@ void EstimationService::step(TimePoint now) noexcept {
   observe(now);
   publish_state(now);
   if (now >= wrench_due_) {
+    watch_bus(now);
     publish_external_wrench(now);
     publish_contact_wrench(now);
     wrench_due_ = std::max(wrench_due_ + wrench_period_, now);
@@ -70,10 +72,12 @@ void EstimationService::step(TimePoint now) noexcept {
 
 void EstimationService::take_sensors(TimePoint now) noexcept {
   while (const auto imu = imu_.take()) {
-    if (imu->value.module_id == config_.module_id) take_imu(imu->value, now);
+    if (imu->value.module_id != config_.module_id) continue;
+    take_imu(imu->value, now);
   }
   while (const auto pose = pose_.take()) {
-    if (pose->value.module_id == config_.module_id) take_pose(pose->value, now);
+    if (pose->value.module_id != config_.module_id) continue;
+    take_pose(pose->value, now);
   }
   estimate_ = filter_.estimate();
 }
@@ -100,24 +104,41 @@ void EstimationService::take_pose(const msg::PoseMeasurement& m, TimePoint now) 
     if (filter_.counters().restarts != restarts) observer_.hold();
     if (verdict == PoseVerdict::rejected) refusal = Refusal::implausible;
     if (verdict == PoseVerdict::repeated) refusal = Refusal::stamp_repeated;
-    // Until the IMU has spoken there is nothing to tie a pose to: no fault of the pose's.
+    // Until the IMU has spoken there is nothing to tie a pose to: no fault of the pose's (PoseVerdict::invalid).
     if (verdict == PoseVerdict::too_old) refusal = Refusal::too_late;
-    if (verdict == PoseVerdict::too_new) refusal = Refusal::stamp_ahead;
+    // Ahead of an IMU that is silent is no fault of the pose's either.
+    const bool ahead = from_ns(m.stamp_ns) - now > from_s(ImuCheckConfig{}.ahead_s_max);
+    if (verdict == PoseVerdict::too_new && ahead) refusal = Refusal::stamp_ahead;
   }
   if (refusal != Refusal::none) spell(Device::pose).refuse(refusal, to_ns(now));
 }
 
 void EstimationService::watch_silence(TimePoint now) noexcept {
-  const std::int64_t now_ns = to_ns(now);
-  if (estimate_.stamp_ns == 0) return;  // nothing came yet: the executor's affair
-  // Without the IMU the state is what it was then; nobody may fly by it.
-  const bool imu_silent = now_ns - estimate_.stamp_ns > to_ns(TimePoint{from_s(config_.imu_silent_s)});
-  if (imu_silent) {
-    estimate_.mode = estimate_.mode == FilterMode::initialising ? FilterMode::initialising : FilterMode::lost;
-    spell(Device::imu).silent(now_ns);
-  } else if (estimate_.mode == FilterMode::dead_reckoning || estimate_.mode == FilterMode::lost) {
-    spell(Device::pose).silent(now_ns);
-  }
+  const auto silent = [now](const std::optional<TimePoint>& heard, double silent_s) {
+    return heard && to_s(now - *heard) > silent_s;
+  };
+  if (silent(imu_heard_, config_.imu_silent_s)) spell(Device::imu).silent(to_ns(now));
+  if (silent(pose_heard_, pose_silent_s)) spell(Device::pose).silent(to_ns(now));
+  // Without a good IMU sample the state is what it was then: nobody may fly by it.
+  const bool stale = estimate_.stamp_ns != 0 && to_s(now - from_ns(estimate_.stamp_ns)) > config_.imu_silent_s;
+  if (stale && estimate_.mode != FilterMode::initialising) estimate_.mode = FilterMode::lost;
+}
+
+/// What the bus refused before we saw it, by what that says of the device.
+void EstimationService::watch_bus(TimePoint now) noexcept {
+  const auto watch = [now](const bus::ReaderStatistics& all, bus::ReaderStatistics& seen, RefusalSpell& spell,
+                           std::optional<TimePoint>& heard) {
+    const auto refuse = [&](std::uint64_t count, std::uint64_t before, Refusal cause) {
+      for (; before < count; ++before) spell.refuse(cause, to_ns(now));
+    };
+    refuse(all.dropped_malformed, seen.dropped_malformed, Refusal::not_finite);  // the codec lets no other number by
+    refuse(all.dropped_late, seen.dropped_late, Refusal::stamp_backward);
+    refuse(all.dropped_expired, seen.dropped_expired, Refusal::too_late);
+    if (all.received != seen.received) heard = now;  // bad or not, it is not silent
+    seen = all;
+  };
+  watch(imu_.statistics(), imu_dropped_, spell(Device::imu), imu_heard_);
+  watch(pose_.statistics(), pose_dropped_, spell(Device::pose), pose_heard_);
 }
 
 void EstimationService::take_actuators(TimePoint now) noexcept {

@@ -61,6 +61,7 @@ class EstimationService final : public runtime::Service {
   void take_imu(const msg::Imu& imu, TimePoint now) noexcept;
   void take_pose(const msg::PoseMeasurement& pose, TimePoint now) noexcept;
   void watch_silence(TimePoint now) noexcept;
+  void watch_bus(TimePoint now) noexcept;
   void observe(TimePoint now) noexcept;
   void zero(double dt_s, TimePoint now) noexcept;
   void publish_state(TimePoint now) noexcept;
@@ -110,7 +111,9 @@ class EstimationService final : public runtime::Service {
   std::uint64_t zero_goal_ = 0;  // to answer; 0: none
   std::uint64_t zero_answered_ = 0;
   bool zeroing_interrupted_ = false;
-  std::int64_t observed_ns_ = 0;  // the state the observer last saw
+  std::optional<TimePoint> imu_heard_, pose_heard_;   // good or not, to 10 ms
+  bus::ReaderStatistics imu_dropped_, pose_dropped_;  // by the bus, when last looked at
+  std::int64_t observed_ns_ = 0;                      // the state the observer last saw
 
   TimePoint last_step_{};
   TimePoint saved_at_{};  // of the checkpoint it goes on from

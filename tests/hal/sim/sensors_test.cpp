@@ -177,7 +177,7 @@ TEST(WorldSensorTest, ImuSeesTheMotionThatThePhysicsMakes) {
   // Integrating the noise-free IMU from the true start must lead to the true end: a spinning, tilting throw.
   World world(still_world(), robot::legion(), {{.id = 1, .p_WB_m = {0, 0, 20}, .hovering = true}});
   ActuatorFrame frame = hover_frame(LatchCommand::hold);
-  frame.rotors[0].thrust_N += 2;
+  set_thrust(frame, 0, frame.rotors[0].thrust_N + 2);
   frame.rotors[1].gimbal_rad = {0.3, -0.2};
   world.actuate(1, frame);
   TruthPose x = world.truth_pose(1);

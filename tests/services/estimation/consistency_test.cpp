@@ -36,9 +36,9 @@ struct Consistency {
     std::array<double, 5> part{};
   };
   std::vector<Errors> errors;
-  double innovations = 0;                 // normalised and squared, mean over the runs and all measurements
-  double measurements = 0;                // their number
-  std::array<double, lags + 1> echo{};    // correlation of the whitened innovations with those k earlier
+  double innovations = 0;               // normalised and squared, mean over the runs and all measurements
+  double measurements = 0;              // their number
+  std::array<double, lags + 1> echo{};  // correlation of the whitened innovations with those k earlier
   std::uint64_t restarts = 0, rejected = 0;
 };
 
@@ -136,7 +136,8 @@ TEST(ConsistencyTest, NegativeControlAnIgnoredDelayIsFoundOut) {
     const Consistency found = examine(deaf);
     EXPECT_GT(found.errors.back().all, 3 * chi2_mean(15, runs, z_bound));
     EXPECT_GT(found.innovations, chi2_mean(6, found.measurements, 2 * z_bound));
-    EXPECT_GT(found.echo[1], 2 * z_bound / std::sqrt(6 * found.measurements)) << "the error stays from one to the next";
+    EXPECT_GT(found.echo[1], 2 * z_bound / std::sqrt(6 * found.measurements))
+        << "the error stays from one to the next";
   }
 }
 

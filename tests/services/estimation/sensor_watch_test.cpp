@@ -73,7 +73,8 @@ TEST(PoseCheckTest, StampsGoForwardUnlessTheClockWasSetBack) {
   const auto at = [&](int k) { return check.check(pose_at(k, ++value)); };
   EXPECT_EQ(at(100), Refusal::none);
   EXPECT_EQ(at(100), Refusal::stamp_repeated);
-  for (int k = 99; k > 50; --k) EXPECT_EQ(at(k), Refusal::stamp_backward) << "running backward, it never gets through";
+  for (int k = 99; k > 50; --k)
+    EXPECT_EQ(at(k), Refusal::stamp_backward) << "running backward, it never gets through";
   EXPECT_EQ(at(101), Refusal::none);
   for (int k = 1; k < 8; ++k) EXPECT_EQ(at(k), Refusal::stamp_backward);
   EXPECT_EQ(at(8), Refusal::none) << "eight in order: another clock";
