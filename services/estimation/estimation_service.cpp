@@ -103,12 +103,11 @@ void EstimationService::take_pose(const msg::PoseMeasurement& m, TimePoint now) 
         m.stamp_ns, {robot::vector(m.p_WB_m), robot::rotation(m.q_WB)}, m.position_std_m, m.attitude_std_rad});
     if (filter_.counters().restarts != restarts) observer_.hold();
     if (verdict == PoseVerdict::rejected) refusal = Refusal::implausible;
-    if (verdict == PoseVerdict::repeated) refusal = Refusal::stamp_repeated;
-    // Until the IMU has spoken there is nothing to tie a pose to: no fault of the pose's (PoseVerdict::invalid).
-    if (verdict == PoseVerdict::too_old) refusal = Refusal::too_late;
-    // Ahead of an IMU that is silent is no fault of the pose's either.
-    const bool ahead = from_ns(m.stamp_ns) - now > from_s(ImuCheckConfig{}.ahead_s_max);
-    if (verdict == PoseVerdict::too_new && ahead) refusal = Refusal::stamp_ahead;
+    // What the IMU leaves nothing to tie to, silent or new, is no fault of the pose's: only its own age is.
+    const Duration age = now - from_ns(m.stamp_ns);
+    if (verdict == PoseVerdict::too_old && age > from_s(pose_silent_s)) refusal = Refusal::too_late;
+    if (verdict == PoseVerdict::too_new && -age > from_s(ImuCheckConfig{}.ahead_s_max))
+      refusal = Refusal::stamp_ahead;
   }
   if (refusal != Refusal::none) spell(Device::pose).refuse(refusal, to_ns(now));
 }
