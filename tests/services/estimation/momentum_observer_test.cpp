@@ -32,6 +32,49 @@ TEST(MomentumObserverTest, FollowsAForceStepExponentiallyAtAnyTimeStep) {
   }
 }
 
+TEST(MomentumObserverTest, TwoStepsByHand) {
+  // K dt = 1, so a = 1/e and 1 - a = 0.632121. Turned by 90 degrees about z: the rotors' 1 N along body x is 1 N
+  // along world y, and a moment about body x is one about world y.
+  MomentumObserver observer({.force_gain_1_s = 10, .moment_gain_1_s = 10});
+  MomentumInput in;
+  in.mass_kg = 2;
+  in.I_M_kg_m2 = Vector3(0.1, 0.2, 0.3).asDiagonal();
+  in.R_WM = robot::exp_so3({0, 0, std::acos(0.0)});
+  in.known_M = {{1, 0, 19.62}, {0.01, 0, 0}};
+  push(observer, in, 0.1);
+  // dp/dt = 2 x 0.1 / 0.1 = 2 N along y of which the rotors make 1; dL/dt = 0.1 x 0.05 / 0.1 = 0.05 Nm, they make
+  // .01.
+  in.v_WM = {0, 0.1, 0};
+  in.w_WM_M = {0.05, 0, 0};
+  push(observer, in, 0.1);
+  EXPECT_NEAR(observer.wrench_W().force.y(), 0.632121, 1e-6);
+  EXPECT_NEAR(observer.wrench_W().moment.y(), 0.632121 * 0.04, 1e-6);
+  // Then nothing changes any more, so something holds against the rotors: a w + (1 - a) (0 - u).
+  push(observer, in, 0.1);
+  EXPECT_NEAR(observer.wrench_W().force.y(), 0.367879 * 0.632121 - 0.632121, 1e-6);
+  EXPECT_NEAR(observer.wrench_W().moment.y(), 0.367879 * 0.632121 * 0.04 - 0.632121 * 0.01, 1e-6);
+  EXPECT_NEAR(observer.wrench_W().force.z(), 0, 1e-9);
+}
+
+TEST(MomentumObserverTest, WhatIsNoNumberLeavesItAsItWas) {
+  MomentumObserver observer;
+  MomentumInput in;
+  in.mass_kg = 4;
+  in.known_M.force = {1, 0, 4 * 9.81};
+  for (int k = 0; k < 100; ++k) push(observer, in, 0.002);
+  const robot::Wrench before = observer.wrench_W();
+  MomentumInput bad = in;
+  bad.v_WM.x() = std::nan("");
+  EXPECT_FALSE(observer.update(bad, 0.002));
+  bad = in;
+  bad.known_M.moment.z() = std::nan("");
+  EXPECT_FALSE(observer.update(bad, 0.002));
+  EXPECT_FALSE(observer.update(in, std::nan("")));
+  EXPECT_EQ(observer.wrench_W().force, before.force);
+  push(observer, in, 0.002);
+  EXPECT_LT((observer.wrench_W().force - before.force).norm(), 0.1);
+}
+
 /// A tumbling body under a wrench it knows of and one it does not, integrated finely.
 struct Tumble {
   double mass = 3.9;
