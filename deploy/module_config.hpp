@@ -34,12 +34,14 @@ struct RingConfig {
 
 struct HardwareConfig {
   std::string backend = "sim";
-  std::string socket;  // sim: the world's
+  std::string socket;                // sim: the world's
+  bool battery_compensation = true;  // of the thrust; false: an experiment's control
 
   template <class V>
   void visit_fields(V& v) {
     v("backend", backend, one_of({"sim"}));
     v("socket", socket);
+    v("battery_compensation", battery_compensation);
   }
 };
 

@@ -42,7 +42,7 @@ struct Simulation::SimulatedModule {
       : config(module_config),
         airframe(make_airframe(config)),
         link(world, config.id),
-        devices(hal::sim::make_devices(link.board(), airframe)),
+        devices(hal::sim::make_devices(link.board(), airframe, config.hal.battery_compensation)),
         ring(config.module_participant("services")),
         swarm(config.swarm_participant("radio"), &ring.waker()),
         listener(std::make_unique<bus::Participant>(config.module_participant("listener"))),

@@ -33,7 +33,7 @@ Airframe legion(bool lidar) {
   const auto rotor = [&](double x, double y, double z, double spin) {
     a.rotors.push_back({.p_BR_m = Vector3(x, y, z) + shift_m,
                         .drag_ratio_m = spin * 0.0172,
-                        .thrust_N_min = 1.0,
+                        .thrust_N_min = 2.0,  // the data say 1; the thrust map was measured from 2 on
                         .thrust_N_max = 21.0,
                         .gimbal_rad_max = 2.0,
                         .gimbal_rate_rad_s_max = 3.0});

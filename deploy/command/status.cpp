@@ -127,6 +127,11 @@ void print_services(const Watched& w) {
                 1e6 * b.execution_s_mean, 1e6 * b.execution_s_max, static_cast<unsigned long long>(b.overruns),
                 static_cast<unsigned long long>(b.dropped), restarts_of(w.module, b.pid));
   }
+  for (const auto& [service, heard] : w.ear->heartbeats()) {
+    if (heard.beat.rejected == 0) continue;
+    std::printf("  %s refused %llu bad samples since its start: `eciton topic echo fault` says which\n", service.c_str(),
+                static_cast<unsigned long long>(heard.beat.rejected));
+  }
 }
 
 /// Processes that should be there; returns whether all are.

@@ -29,7 +29,7 @@ class SimulatedHost {
         airframe_(deploy::make_airframe(config)),
         link_(value_or_throw(hal::sim::SocketLink::connect(config.hal.socket, config.id, connect_timeout))),
         lockstep_(link_->pace() == hal::sim::Pace::lockstep),
-        devices_(hal::sim::make_devices(link_->board(), airframe_)),
+        devices_(hal::sim::make_devices(link_->board(), airframe_, config.hal.battery_compensation)),
         ring_(config.module_participant("hardware")),
         group_({.module_id = config.id, .process = "hardware"}, {&ring_},
                lockstep_ ? runtime::ServiceGroup::Pacing::lockstep : runtime::ServiceGroup::Pacing::wall_clock) {

@@ -113,6 +113,11 @@ void ActService::write_safe_output(TimePoint now) noexcept {
 void ActService::watch_attitude() noexcept {
   while (const auto imu = imu_.take()) {
     if (imu->value.module_id != config_.module_id) continue;
+    // One sample that is no number would stay in the filter for ever.
+    if (!robot::vector(imu->value.specific_force_M_m_s2).allFinite() ||
+        !robot::vector(imu->value.w_WM_M_rad_s).allFinite()) {
+      continue;
+    }
     const TimePoint stamp = from_ns(imu->value.stamp_ns);
     const double dt_s = std::clamp(to_s(stamp - last_imu_), 0.0, 0.02);
     last_imu_ = stamp;

@@ -7,6 +7,11 @@
 namespace eciton::hal::sim {
 namespace {
 
+constexpr double battery_nominal_V = 24.2;
+/// Of each new reading, at 500 Hz: smoothed over 0.1 s, fast enough for the sag of a climb, slow enough for its
+/// noise.
+constexpr double battery_share = 0.02;
+
 /// Copies a frame's readings out, once per frame received.
 template <class Reading, std::size_t Max>
 Io read_once(const Board& board, const Lifecycle& lifecycle, const std::array<Reading, Max>& from, std::size_t count,
@@ -43,7 +48,9 @@ Status SimRotorBus::configure() {
 Status SimRotorBus::activate() {
   if (Status status = lifecycle_.activate("rotor bus"); !status) return status;
   board_.actuators().rotors.fill({});
+  board_.actuators().throttle_percent.fill(0);
   board_.actuators().armed = true;
+  follow_battery(1);
   return ok();
 }
 
@@ -51,12 +58,24 @@ void SimRotorBus::deactivate() noexcept {
   lifecycle_.deactivate();
   board_.actuators().armed = false;
   board_.actuators().rotors.fill({});
+  board_.actuators().throttle_percent.fill(0);
 }
 
 Io SimRotorBus::write(std::span<const RotorSetpoint> commands) noexcept {
   if (!lifecycle_.active() || commands.size() != rotors_) return Io::error;
   std::copy(commands.begin(), commands.end(), board_.actuators().rotors.begin());
+  if (compensates_) follow_battery(battery_share);
+  for (std::size_t k = 0; k < rotors_; ++k) {
+    board_.actuators().throttle_percent[k] =
+        map_.percent(commands[k].thrust_N, battery_V_ > 0 ? battery_V_ : battery_nominal_V);
+  }
   return Io::ok;
+}
+
+void SimRotorBus::follow_battery(double share) {
+  const double read_V = board_.sensors().rotors[0].battery_V;
+  if (!(read_V > 0)) return;
+  battery_V_ = battery_V_ > 0 ? battery_V_ + share * (read_V - battery_V_) : read_V;
 }
 
 Io SimRotorBus::read(std::span<RotorReading> states) noexcept {
@@ -129,10 +148,10 @@ void SimImu::deactivate() noexcept { lifecycle_.deactivate(); }
 
 Io SimImu::read(ImuReading& reading) noexcept {
   if (!lifecycle_.readable()) return Io::error;
-  const ImuReading& newest = board_.sensors().imu;
-  if (board_.frames_received() == 0 || newest.stamp == stamp_read_) return Io::nothing_new;
-  stamp_read_ = newest.stamp;
-  reading = newest;
+  const SensorFrame& frame = board_.sensors();
+  if (frame.imu_count == samples_read_) return Io::nothing_new;
+  samples_read_ = frame.imu_count;
+  reading = frame.imu;
   return Io::ok;
 }
 
@@ -146,8 +165,8 @@ void SimPoseSource::deactivate() noexcept { lifecycle_.deactivate(); }
 Io SimPoseSource::read(PoseReading& reading) noexcept {
   if (!lifecycle_.readable()) return Io::error;
   const SensorFrame& frame = board_.sensors();
-  if (!frame.has_pose || frame.pose.stamp == stamp_read_) return Io::nothing_new;
-  stamp_read_ = frame.pose.stamp;
+  if (frame.pose_count == samples_read_) return Io::nothing_new;
+  samples_read_ = frame.pose_count;
   reading = frame.pose;
   return Io::ok;
 }

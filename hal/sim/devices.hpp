@@ -3,6 +3,7 @@
 // allocates or locks; the board's thread is theirs.
 #pragma once
 
+#include "core/robot/thrust_map.hpp"
 #include "hal/interfaces.hpp"
 #include "hal/sim/board.hpp"
 
@@ -27,10 +28,12 @@ class Lifecycle {
   State state_ = State::unconfigured;
 };
 
-/// Motors and gimbals. Active: armed. Inactive: motors run down, whatever the setpoints were.
+/// Motors and gimbals. Active: armed. Inactive: motors run down, whatever the setpoints were. Thrust becomes a
+/// throttle at the battery's voltage, as measured; without compensation, at the voltage there was when it was armed.
 class SimRotorBus : public RotorBus {
  public:
-  SimRotorBus(Board& board, std::size_t rotors) : board_(board), rotors_(rotors) {}
+  SimRotorBus(Board& board, std::size_t rotors, const robot::ThrustMap& map, bool compensates = true)
+      : board_(board), rotors_(rotors), map_(map), compensates_(compensates) {}
   Status configure() override;
   /// Arms with all thrusts at zero.
   Status activate() override;
@@ -40,8 +43,13 @@ class SimRotorBus : public RotorBus {
   Io read(std::span<RotorReading> states) noexcept override;
 
  private:
+  void follow_battery(double share);
+
   Board& board_;
   std::size_t rotors_;
+  robot::ThrustMap map_;
+  bool compensates_;
+  double battery_V_ = 0;  // smoothed; 0: not read yet
   Lifecycle lifecycle_;
   std::uint64_t frames_read_ = 0;
 };
@@ -92,7 +100,7 @@ class SimImu : public Imu {
  private:
   Board& board_;
   Lifecycle lifecycle_;
-  TimePoint stamp_read_ = TimePoint::min();
+  std::uint64_t samples_read_ = 0;
 };
 
 class SimPoseSource : public PoseSource {
@@ -107,7 +115,7 @@ class SimPoseSource : public PoseSource {
  private:
   Board& board_;
   Lifecycle lifecycle_;
-  TimePoint stamp_read_ = TimePoint::min();
+  std::uint64_t samples_read_ = 0;
 };
 
 }  // namespace eciton::hal::sim

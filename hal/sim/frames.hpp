@@ -21,9 +21,10 @@ struct SensorFrame {
   std::uint32_t rotor_count = 0;
   std::uint32_t joint_count = 0;
   std::uint32_t port_count = 0;
-  ImuReading imu;         // the newest sample
-  bool has_pose = false;  // false until the first measurement has arrived
-  PoseReading pose;       // the newest that has arrived, stamped when it was measured
+  std::uint64_t imu_count = 0;   // samples so far: one more, and `imu` is new, whatever its stamp says
+  std::uint64_t pose_count = 0;  // likewise; 0 until the first measurement has arrived
+  ImuReading imu;                // the newest sample
+  PoseReading pose;              // the newest that has arrived, stamped when it was measured
   std::array<RotorReading, max_rotors> rotors{};
   std::array<JointReading, max_joints> joints{};
   std::array<LatchReading, max_ports> latches{};
@@ -33,10 +34,11 @@ struct SensorFrame {
 enum class LatchCommand : std::uint8_t { hold, engage, release };
 
 struct ActuatorFrame {
-  TimePoint stamp;              // of the sensor frame acted on
-  bool armed = false;           // false: motors run down, whatever the setpoints say
-  bool joints_powered = false;  // false: joints swing freely, braked by their gears
-  std::array<RotorSetpoint, max_rotors> rotors{};
+  TimePoint stamp;                                    // of the sensor frame acted on
+  bool armed = false;                                 // false: motors run down, whatever the setpoints say
+  bool joints_powered = false;                        // false: joints swing freely, braked by their gears
+  std::array<RotorSetpoint, max_rotors> rotors{};     // thrusts as they were asked for: to read along
+  std::array<double, max_rotors> throttle_percent{};  // what the speed controllers get: see core/robot/thrust_map.hpp
   std::array<JointSetpoint, max_joints> joints{};
   std::array<LatchCommand, max_ports> latches{};
 };

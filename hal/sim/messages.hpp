@@ -12,7 +12,7 @@
 namespace eciton::hal::sim {
 
 /// Changes with every change of these structs or of the frames.
-inline constexpr std::uint32_t protocol_version = 1;
+inline constexpr std::uint32_t protocol_version = 2;
 
 enum class MessageType : std::uint32_t { hello = 1, welcome, refused, sensors, actuators, bye };
 

@@ -1,6 +1,9 @@
 // One simulated module: from commands to forces, from motion to readings.
 #include "hal/sim/module.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace eciton::hal::sim {
 namespace {
 
@@ -22,12 +25,18 @@ SimModule::SimModule(const WorldConfig& config, const robot::Airframe& airframe,
       airframe_(&airframe),
       index_(index),
       mismatch_(mismatch),
+      thrust_map_(robot::thrust_map(airframe)),
+      battery_(config.battery),
+      battery_noise_V_(config.noise * config.battery.noise_V),
+      battery_random_(config.seed, start.id, Purpose::battery),
       reading_config_(config.readings),
       noise_(config.noise),
       reading_random_(config.seed, start.id, Purpose::readings),
-      imu_(config.imu, config.noise, Random(config.seed, start.id, Purpose::imu)),
+      imu_(config.imu, config.noise, Random(config.seed, start.id, Purpose::imu),
+           Random(config.seed, start.id, Purpose::imu_fault)),
       pose_(config.pose_sensor(), source_kind(config), config.noise, mismatch.attitude_bias_rad,
-            Random(config.seed, start.id, Purpose::pose), Random(config.seed, start.id, Purpose::drift)) {
+            Random(config.seed, start.id, Purpose::pose), Random(config.seed, start.id, Purpose::drift),
+            Random(config.seed, start.id, Purpose::pose_fault)) {
   for (const robot::RotorGeometry& rotor : airframe.rotors) {
     rotors_.emplace_back(rotor, start.hovering ? airframe.hover_thrust_N() : 0.0);
   }
@@ -36,7 +45,11 @@ SimModule::SimModule(const WorldConfig& config, const robot::Airframe& airframe,
   }
   if (start.hovering) {
     command_.armed = command_.joints_powered = true;
-    for (std::size_t k = 0; k < rotors_.size(); ++k) command_.rotors[k].thrust_N = airframe.hover_thrust_N();
+    battery_.step(1, 0);
+    for (std::size_t k = 0; k < rotors_.size(); ++k) {
+      command_.rotors[k].thrust_N = airframe.hover_thrust_N();
+      command_.throttle_percent[k] = thrust_map_.percent(airframe.hover_thrust_N(), battery_.voltage_V());
+    }
   }
 }
 
@@ -50,11 +63,23 @@ void SimModule::joint_angles(const mjData* d, std::span<double> joint_rad) const
 }
 
 void SimModule::step_actuators(mjData* d) {
-  for (std::size_t k = 0; k < rotors_.size(); ++k) rotors_[k].step(command_.rotors[k], command_.armed, step_s);
+  step_rotors();
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     d->qfrc_applied[index_.joint_dof[k]] =
         joints_[k].step(command_.joints[k], command_.joints_powered, d->qpos[index_.joint_qpos[k]], step_s);
   }
+}
+
+void SimModule::step_rotors() {
+  const double hover_N = airframe_->hover_thrust_N();
+  double load = 0;
+  for (std::size_t k = 0; k < rotors_.size(); ++k) {
+    const double thrust_N = thrust_map_.thrust_N(command_.throttle_percent[k], battery_.voltage_V());
+    rotors_[k].step({.thrust_N = thrust_N, .gimbal_rad = command_.rotors[k].gimbal_rad}, command_.armed, step_s);
+    const double share = rotors_[k].thrust_N() / hover_N;
+    load += share * std::sqrt(std::max(share, 0.0)) / static_cast<double>(rotors_.size());
+  }
+  battery_.step(load, step_s);
 }
 
 robot::Wrench SimModule::rotor_wrench_B_W(const Matrix3& R_WB) const {
@@ -101,12 +126,13 @@ void SimModule::sample_readings(const mjData* d) {
   const auto noisy = [&](double value, double deviation) {
     return value + noise_ * deviation * reading_random_.normal();
   };
+  const double battery_V = battery_.voltage_V() + battery_noise_V_ * battery_random_.normal();
   for (std::size_t k = 0; k < rotors_.size(); ++k) {
     rotor_readings_[k].thrust_N = noisy(rotors_[k].thrust_N(), reading_config_.thrust_noise_N);
     for (std::size_t axis = 0; axis < 2; ++axis) {
       rotor_readings_[k].gimbal_rad[axis] = noisy(rotors_[k].gimbal_rad()[axis], reading_config_.gimbal_noise_rad);
     }
-    rotor_readings_[k].battery_V = reading_config_.battery_V;
+    rotor_readings_[k].battery_V = battery_V;
   }
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     const double position_rad = joints_[k].encoder_rad(d->qpos[index_.joint_qpos[k]]);
@@ -123,10 +149,19 @@ void SimModule::fill(SensorFrame& frame) const {
   frame.joint_count = static_cast<std::uint32_t>(joints_.size());
   frame.port_count = static_cast<std::uint32_t>(airframe_->ports.size());
   frame.imu = imu_.reading();
-  frame.has_pose = pose_.has_reading();
+  frame.imu_count = imu_.count();
+  frame.pose_count = pose_.count();
   frame.pose = pose_.reading();
   frame.rotors = rotor_readings_;
   frame.joints = joint_readings_;
+}
+
+void SimModule::break_sensor(SimSensor sensor, const SensorFault& fault, TimePoint now) {
+  if (sensor == SimSensor::imu) {
+    imu_.set_fault(fault, now);
+  } else {
+    pose_.set_fault(fault, now);
+  }
 }
 
 }  // namespace eciton::hal::sim

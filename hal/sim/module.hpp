@@ -3,7 +3,9 @@
 
 #include <vector>
 
+#include "core/robot/thrust_map.hpp"
 #include "hal/sim/actuators.hpp"
+#include "hal/sim/battery.hpp"
 #include "hal/sim/couplings.hpp"
 #include "hal/sim/disturbances.hpp"
 #include "hal/sim/mismatch.hpp"
@@ -49,6 +51,7 @@ class SimModule {
   /// The first samples, from the accelerations of the state the world begins with.
   void start_sensors(TimePoint now, const mjData* d);
   void fill(SensorFrame& frame) const;
+  void break_sensor(SimSensor sensor, const SensorFault& fault, TimePoint now);
 
   UnitGust gust;
   UnitGust wake;
@@ -56,12 +59,17 @@ class SimModule {
   robot::Wrench external;  // as set from outside
 
  private:
+  void step_rotors();
   void sample_readings(const mjData* d);
 
   const robot::Airframe* airframe_;
   ModuleIndex index_;
   Mismatch mismatch_;
   ActuatorFrame command_;
+  robot::ThrustMap thrust_map_;
+  Battery battery_;
+  double battery_noise_V_;
+  Random battery_random_;
   std::vector<RotorActuator> rotors_;
   std::vector<JointActuator> joints_;
   ReadingConfig reading_config_;

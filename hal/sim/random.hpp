@@ -11,7 +11,18 @@
 
 namespace eciton::hal::sim {
 
-enum class Purpose : std::uint64_t { mismatch = 1, imu, pose, drift, readings, gust, wake };
+enum class Purpose : std::uint64_t {
+  mismatch = 1,
+  imu,
+  pose,
+  drift,
+  readings,
+  gust,
+  wake,
+  imu_fault,
+  pose_fault,
+  battery
+};
 
 class Random {
  public:

@@ -18,13 +18,14 @@ void copy(const Vector3& from, std::array<double, 3>& to) { Eigen::Map<Vector3>(
 
 }  // namespace
 
-ImuSensor::ImuSensor(const ImuConfig& config, double noise_scale, Random random)
+ImuSensor::ImuSensor(const ImuConfig& config, double noise_scale, Random random, Random fault)
     : config_(config),
       scale_(noise_scale),
       random_(random),
       accelerometer_bias_(scale_ * config.accelerometer_bias_m_s2 * random_.normal3()),
       gyroscope_bias_(scale_ * config.gyroscope_bias_rad_s * random_.normal3()),
-      period_steps_(steps_per_sample(config.rate_Hz)) {}
+      period_steps_(steps_per_sample(config.rate_Hz)),
+      fault_(fault) {}
 
 void ImuSensor::step(TimePoint now, const Vector3& f_B_m_s2, const Vector3& w_WB_B_rad_s) {
   if (!started_) {
@@ -40,15 +41,19 @@ void ImuSensor::step(TimePoint now, const Vector3& f_B_m_s2, const Vector3& w_WB
 }
 
 void ImuSensor::sample(TimePoint now, const Vector3& f_B_m_s2, const Vector3& w_WB_B_rad_s) {
-  reading_.stamp = now;
+  ImuReading fresh;
+  fresh.stamp = now;
   copy(f_B_m_s2 + accelerometer_bias_ + scale_ * config_.accelerometer_noise_m_s2 * random_.normal3(),
-       reading_.specific_force_M_m_s2);
+       fresh.specific_force_M_m_s2);
   copy(w_WB_B_rad_s + gyroscope_bias_ + scale_ * config_.gyroscope_noise_rad_s * random_.normal3(),
-       reading_.w_WM_M_rad_s);
+       fresh.w_WM_M_rad_s);
+  if (!fault_.befall(fresh, reading_)) return;
+  reading_ = fresh;
+  ++count_;
 }
 
 PoseSensor::PoseSensor(const PoseSensorConfig& config, PoseSourceKind kind, double noise_scale,
-                       const Vector3& attitude_bias_rad, Random noise, Random drift)
+                       const Vector3& attitude_bias_rad, Random noise, Random drift, Random fault)
     : config_(config),
       kind_(kind),
       scale_(noise_scale),
@@ -57,7 +62,8 @@ PoseSensor::PoseSensor(const PoseSensorConfig& config, PoseSourceKind kind, doub
       drift_random_(drift),
       position_bias_(scale_ * config.position_bias_m * drift_random_.normal3()),
       latency_(from_s(config.latency_s)),
-      period_steps_(steps_per_sample(config.rate_Hz)) {
+      period_steps_(steps_per_sample(config.rate_Hz)),
+      fault_(fault) {
   drift_ = scale_ * config.drift_m * drift_random_.normal3();
 }
 
@@ -68,8 +74,11 @@ void PoseSensor::step(TimePoint now, const robot::Pose& X_WB) {
   }
   steps_ = (steps_ + 1) % period_steps_;
   while (count_ > 0 && in_flight_[oldest_].stamp + latency_ <= now) {
-    reading_ = in_flight_[oldest_];
-    has_reading_ = true;
+    PoseReading fresh = in_flight_[oldest_];
+    if (fault_.befall(fresh, reading_)) {
+      reading_ = fresh;
+      ++arrived_;
+    }
     oldest_ = (oldest_ + 1) % in_flight_max;
     --count_;
   }

@@ -8,6 +8,7 @@
 #include "core/robot/frames.hpp"
 #include "hal/interfaces.hpp"
 #include "hal/sim/random.hpp"
+#include "hal/sim/sensor_fault.hpp"
 #include "hal/sim/world_config.hpp"
 
 namespace eciton::hal::sim {
@@ -16,11 +17,14 @@ namespace eciton::hal::sim {
 /// as the chips do), angular velocity that at the stamp.
 class ImuSensor {
  public:
-  ImuSensor(const ImuConfig& config, double noise_scale, Random random);
+  ImuSensor(const ImuConfig& config, double noise_scale, Random random, Random fault);
 
   /// After each physics step: the mean specific force over it, and the angular velocity at its end, body axes.
   void step(TimePoint now, const robot::Vector3& f_B_m_s2, const robot::Vector3& w_WB_B_rad_s);
   const ImuReading& reading() const { return reading_; }
+  /// How many have come: a reader knows by it whether there is a new one, whatever its stamp says.
+  std::uint64_t count() const { return count_; }
+  void set_fault(const SensorFault& fault, TimePoint now) { fault_.set(fault, now); }
 
  private:
   void sample(TimePoint now, const robot::Vector3& f_B_m_s2, const robot::Vector3& w_WB_B_rad_s);
@@ -33,6 +37,8 @@ class ImuSensor {
   int steps_ = 0;  // since the last sample; the first call samples at once
   bool started_ = false;
   robot::Vector3 sum_ = robot::Vector3::Zero();
+  FaultySensor fault_;
+  std::uint64_t count_ = 0;
   ImuReading reading_;
 };
 
@@ -40,13 +46,15 @@ class ImuSensor {
 class PoseSensor {
  public:
   PoseSensor(const PoseSensorConfig& config, PoseSourceKind kind, double noise_scale,
-             const robot::Vector3& attitude_bias_rad, Random noise, Random drift);
+             const robot::Vector3& attitude_bias_rad, Random noise, Random drift, Random fault);
 
   /// After each physics step: measures when due, and hands over what has been under way for the latency.
   void step(TimePoint now, const robot::Pose& X_WB);
   /// The newest measurement that has arrived.
-  bool has_reading() const { return has_reading_; }
+  bool has_reading() const { return arrived_ > 0; }
   const PoseReading& reading() const { return reading_; }
+  std::uint64_t count() const { return arrived_; }
+  void set_fault(const SensorFault& fault, TimePoint now) { fault_.set(fault, now); }
 
  private:
   PoseReading measure(TimePoint now, const robot::Pose& X_WB);
@@ -66,7 +74,8 @@ class PoseSensor {
   std::array<PoseReading, in_flight_max> in_flight_{};
   std::size_t oldest_ = 0;
   std::size_t count_ = 0;
-  bool has_reading_ = false;
+  FaultySensor fault_;
+  std::uint64_t arrived_ = 0;
   PoseReading reading_;
 };
 

@@ -305,6 +305,10 @@ void World::set_external_wrench(std::uint32_t module, const Wrench& wrench_B_W) 
 
 void World::set_wind(const Vector3& force_W_N) { impl_->wind_W_N = force_W_N; }
 
+void World::break_sensor(std::uint32_t module, SimSensor sensor, const SensorFault& fault) {
+  impl_->modules[impl_->index(module)].break_sensor(sensor, fault, impl_->now);
+}
+
 const std::optional<Error>& World::fault() const { return impl_->fault; }
 
 }  // namespace eciton::hal::sim

@@ -11,6 +11,7 @@
 #include "core/robot/airframe.hpp"
 #include "core/runtime/plant.hpp"
 #include "hal/sim/frames.hpp"
+#include "hal/sim/sensor_fault.hpp"
 #include "hal/sim/world_config.hpp"
 
 namespace eciton::hal::sim {
@@ -76,6 +77,9 @@ class World : public runtime::Plant {
   void set_external_wrench(std::uint32_t module, const robot::Wrench& wrench_B_W);
   /// Replaces the configuration's constant wind force on every module, N.
   void set_wind(const robot::Vector3& force_W_N);
+
+  /// Breaks a module's sensor, or mends it (SensorFaultKind::none), from its next sample on.
+  void break_sensor(std::uint32_t module, SimSensor sensor, const SensorFault& fault);
 
   /// The physics has diverged: the world stands still from then on and says when and where.
   const std::optional<Error>& fault() const;

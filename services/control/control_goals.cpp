@@ -23,7 +23,7 @@ void ControlService::take_requests(TimePoint now) noexcept {
         decision = decide(mode_, FlightRequest::stop, conditions_);
         break;
       case msg::ModeAction::zero:
-        break;  // estimation's
+        continue;  // estimation's, which answers it
     }
     mode_ = decision.mode;
     answer(msg::GoalKind::mode, request.correlation_id,

@@ -23,18 +23,20 @@ struct MemberWrench {
 };
 
 struct MemberContact {
+  robot::Vector3 r_W = robot::Vector3::Zero();     // as it says; never heard of: straight on from its neighbour
   robot::Wrench d_W;                               // external less common wrench, about r
   robot::Vector3 link_W = robot::Vector3::Zero();  // P to the next member: midway between what both say
   robot::Wrench contact_W;                         // of this member on the next, about P; zero for the last one
   double freshness = 0;
+  double link_freshness = 0;  // of both ends' together: how far contact_W is to be believed
 };
 
 /// What is of the whole chain.
 struct ChainWrench {
-  robot::Wrench common_W;  // disturbance common to all, about mean_r_W
+  robot::Wrench common_W;  // mean force, and total moment about mean_r_W by the number of members
   robot::Vector3 mean_r_W = robot::Vector3::Zero();
   std::size_t fresh = 0;  // members that count fully
-  bool complete = false;  // every member known: else all wrenches here are zero
+  bool complete = false;  // every member known
 };
 
 struct ContactWrenches : ChainWrench {
@@ -45,8 +47,10 @@ struct ContactWrenches : ChainWrench {
 /// Rule for silent members: a member's last wrench is held and its *difference from the common one* fades
 /// with its age, so that a silent member ends up as one that feels no contact, and what the others feel still
 /// adds up to nothing. With weights f_k (1 while fresh):
-///   D_F = sum f_k F_k / sum f_k,   D_M = sum f_k [M_k + (r_k - r_mean) x (F_k - D_F)] / sum f_k about r_mean,
-///   d_k = f_k (W_k - D),           c_k = -X(r_mean - P_k) sum_{j<=k} X(r_j - r_mean) d_j.
+///   D_k = the share of member k in the common disturbance of all f_k (W_k) (core/robot/common_disturbance.hpp),
+///   d_k = f_k (W_k - D_k),         c_k = -X(r_mean - P_k) sum_{j<=k} X(r_j - r_mean) d_j.
+/// A member never heard of is one that is silent for ever: the others estimate among themselves, and what its links
+/// carry is a guess, marked by their freshness. (d is the same about any r_mean, so a guessed place does no harm.)
 /// Real-time safe, pure. A chain of any length, in time linear in it; `contacts` has a place for each member.
 ChainWrench solve_contacts(std::span<const MemberWrench> members, std::span<MemberContact> contacts,
                            const robot::FreshnessConfig& config = {});

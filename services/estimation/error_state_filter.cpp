@@ -1,4 +1,4 @@
-// Prediction, delayed fusion and modes of the error-state filter.
+// Prediction and delayed fusion of the error-state filter; its modes are in error_state_filter_modes.cpp.
 #include "services/estimation/error_state_filter.hpp"
 
 #include <algorithm>
@@ -19,6 +19,16 @@ const Vector3 gravity_W(0, 0, -robot::gravity_m_s2);
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 bool finite(const Pose& X) { return X.p.allFinite() && X.R.allFinite() && std::abs(X.R.determinant() - 1) < 1e-3; }
+
+bool valid(const PoseMeasurement& m) {
+  const auto deviation = [](double s) { return std::isfinite(s) && s > 0; };
+  return finite(m.X_WB) && deviation(m.position_std_m) && deviation(m.attitude_std_rad);
+}
+
+/// A bias that no sensor of the kind has was the filter's own error.
+Vector3 plausible(const Vector3& bias, double bias_max) {
+  return bias.cwiseAbs().maxCoeff() <= bias_max ? bias : Vector3(Vector3::Zero());
+}
 
 Matrix3 orthonormal(const Matrix3& R_WB) { return robot::Quaternion(R_WB).normalized().toRotationMatrix(); }
 
@@ -57,26 +67,53 @@ void ErrorStateFilter::predict(const Entry& from, Entry& to) const {
   add(BA, config_.accelerometer_bias_walk_m_s2_rts);
 }
 
-bool ErrorStateFilter::update(const ImuSample& sample) {
-  const bool good = sample.specific_force_B_m_s2.allFinite() && sample.w_WB_B_rad_s.allFinite();
-  if (!good || (count_ > 0 && sample.stamp_ns <= newest().imu.stamp_ns)) {
+ImuVerdict ErrorStateFilter::judge(const ImuSample& sample) {
+  if (!sample.specific_force_B_m_s2.allFinite() || !sample.w_WB_B_rad_s.allFinite()) return ImuVerdict::invalid;
+  if (count_ == 0 || sample.stamp_ns > newest().imu.stamp_ns) {
+    imu_backward_ = 0;
+    return ImuVerdict::used;
+  }
+  if (sample.stamp_ns == newest().imu.stamp_ns) return ImuVerdict::repeated;
+  // One sample from the future would shut out all that follow: those behind are believed when they go on in order.
+  imu_backward_ = imu_backward_ > 0 && sample.stamp_ns > imu_backward_ns_ ? imu_backward_ + 1 : 1;
+  imu_backward_ns_ = sample.stamp_ns;
+  if (imu_backward_ < config_.imu_backward_max) return ImuVerdict::backward;
+  imu_backward_ = 0;
+  begin_anew();
+  return ImuVerdict::used;
+}
+
+void ErrorStateFilter::begin_anew() {
+  ++counters_.imu_gaps;
+  const Nominal kept = newest().x;
+  count_ = 0;
+  buffer_[head_].x = kept;  // the biases are still worth something
+  started_ = false;
+}
+
+void ErrorStateFilter::forget() {
+  count_ = 0;
+  started_ = false;
+  buffer_[head_] = {};
+  rejected_since_ns_.reset();
+  good_since_start_ = 0;
+  refresh_mode();
+}
+
+ImuVerdict ErrorStateFilter::update(const ImuSample& sample) {
+  const ImuVerdict verdict = judge(sample);
+  if (verdict != ImuVerdict::used) {
     ++counters_.imu_refused;
-    return false;
+    return verdict;
   }
   ++counters_.imu;
-  const bool gap = count_ > 0 && seconds(sample.stamp_ns - newest().imu.stamp_ns) > config_.imu_gap_s_max;
-  if (gap) {
-    ++counters_.imu_gaps;
-    const Nominal kept = newest().x;
-    count_ = 0;
-    buffer_[head_].x = kept;  // the biases are still worth something
-    started_ = false;
-  }
+  if (count_ > 0 && seconds(sample.stamp_ns - newest().imu.stamp_ns) > config_.imu_gap_s_max) begin_anew();
   const std::size_t before = head_;
   if (count_ > 0) head_ = (head_ + 1) % buffer_.size();
   Entry& entry = buffer_[head_];
   entry.imu = sample;
   entry.pose.reset();
+  entry.occupied = false;
   if (count_ > 0) {
     if (started_) {
       predict(buffer_[before], entry);
@@ -86,15 +123,15 @@ bool ErrorStateFilter::update(const ImuSample& sample) {
   }
   count_ = std::min(count_ + 1, buffer_.size());
   refresh_mode();
-  return true;
+  return ImuVerdict::used;
 }
 
 void ErrorStateFilter::replay(std::size_t age) {
   for (; age > 0; --age) {
     Entry& next = at(age - 1);
     predict(at(age), next);
-    double chi2 = 0;
-    if (next.pose) fuse(next, *next.pose, 1e300, chi2);
+    Innovation again;
+    if (next.pose) fuse(next, *next.pose, 1e300, again);
   }
 }
 
@@ -114,14 +151,14 @@ std::optional<std::size_t> ErrorStateFilter::find(std::int64_t stamp_ns) const {
   return low;
 }
 
-bool ErrorStateFilter::fuse(Entry& entry, const PoseMeasurement& measurement, double gate_chi2, double& chi2) const {
+bool ErrorStateFilter::fuse(Entry& entry, const PoseMeasurement& measurement, double gate_chi2,
+                            Innovation& innovation) const {
   // The pose lies up to one sample after the entry: it is predicted by what the entry knows, and H with it.
   const double h = seconds(measurement.stamp_ns - entry.imu.stamp_ns);
   Nominal& x = entry.x;
   const Vector3 a = x.R * (entry.imu.specific_force_B_m_s2 - x.ba) + gravity_W;
   const Matrix3 turn = exp_so3((entry.imu.w_WB_B_rad_s - x.bg) * h);
-  Vector6 innovation;
-  innovation << measurement.X_WB.p - (x.p + x.v * h + a * (0.5 * h * h)),
+  innovation.value << measurement.X_WB.p - (x.p + x.v * h + a * (0.5 * h * h)),
       log_so3((x.R * turn).transpose() * measurement.X_WB.R);
 
   using Gain = Eigen::Matrix<double, 15, 6>;
@@ -135,14 +172,14 @@ bool ErrorStateFilter::fuse(Entry& entry, const PoseMeasurement& measurement, do
   noise << Vector3::Constant(position_std * position_std), Vector3::Constant(attitude_std * attitude_std);
 
   const Gain PHt = entry.P * H.transpose();
-  robot::Matrix6 S = H * PHt;
-  S.diagonal() += noise;
-  const Eigen::LDLT<robot::Matrix6> S_inverse(S);
-  chi2 = innovation.dot(S_inverse.solve(innovation));
-  if (!(chi2 <= gate_chi2)) return false;
+  innovation.covariance = H * PHt;
+  innovation.covariance.diagonal() += noise;
+  const Eigen::LDLT<robot::Matrix6> S_inverse(innovation.covariance);
+  innovation.chi2 = innovation.value.dot(S_inverse.solve(innovation.value));
+  if (!(innovation.chi2 <= gate_chi2)) return false;
 
   const Gain K = S_inverse.solve(PHt.transpose()).transpose();
-  const Eigen::Matrix<double, 15, 1> error = K * innovation;
+  const Eigen::Matrix<double, 15, 1> error = K * innovation.value;
   x.p += error.segment<3>(P);
   x.v += error.segment<3>(V);
   x.R = orthonormal(x.R * exp_so3(error.segment<3>(R)));
@@ -166,6 +203,8 @@ void ErrorStateFilter::restart(Entry& entry, const PoseMeasurement& measurement)
   Nominal& x = entry.x;
   x.p = measurement.X_WB.p;
   x.v.setZero();
+  x.bg = plausible(x.bg, config_.bias_kept_stds * config_.gyroscope_bias_std_initial_rad_s);
+  x.ba = plausible(x.ba, config_.bias_kept_stds * config_.accelerometer_bias_std_initial_m_s2);
   x.R = orthonormal(measurement.X_WB.R * exp_so3((x.bg - entry.imu.w_WB_B_rad_s) * h));
   const auto squared = [](double s) { return Vector3(Vector3::Constant(s * s)); };
   entry.P.setZero();
@@ -181,18 +220,21 @@ PoseVerdict ErrorStateFilter::start_at(std::size_t age, const PoseMeasurement& m
   count_ = age + 1;
   restart(at(age), measurement);
   at(age).pose.reset();
+  at(age).occupied = true;
   replay(age);
   started_ = true;
   good_since_start_ = 1;
   rejected_since_ns_.reset();
   last_good_ns_ = measurement.stamp_ns;
-  if (mode_ == FilterMode::ready) mode_ = FilterMode::initialising;
+  position_std_m_ = measurement.position_std_m;
+  attitude_std_rad_ = measurement.attitude_std_rad;
+  mode_ = FilterMode::initialising;  // from dead reckoning too: what is known of the velocity is gone
   refresh_mode();
   return PoseVerdict::started;
 }
 
 PoseVerdict ErrorStateFilter::update(const PoseMeasurement& measurement) {
-  if (!finite(measurement.X_WB) || count_ == 0) {
+  if (!valid(measurement) || count_ == 0) {
     ++counters_.invalid;
     return PoseVerdict::invalid;
   }
@@ -205,10 +247,14 @@ PoseVerdict ErrorStateFilter::update(const PoseMeasurement& measurement) {
     ++counters_.too_new;
     return PoseVerdict::too_new;
   }
+  Entry& entry = at(*age);
+  if (entry.occupied) {
+    ++counters_.repeated;
+    return PoseVerdict::repeated;
+  }
   if (!started_ || mode_ == FilterMode::lost) return start_at(*age, measurement);
 
-  Entry& entry = at(*age);
-  if (!fuse(entry, measurement, config_.gate_chi2, last_chi2_)) {
+  if (!fuse(entry, measurement, config_.gate_chi2, innovation_)) {
     ++counters_.rejected;
     if (!rejected_since_ns_) rejected_since_ns_ = measurement.stamp_ns;
     if (seconds(measurement.stamp_ns - *rejected_since_ns_) >= config_.restart_rejected_s) {
@@ -217,6 +263,9 @@ PoseVerdict ErrorStateFilter::update(const PoseMeasurement& measurement) {
     return PoseVerdict::rejected;
   }
   entry.pose = measurement;
+  entry.occupied = true;
+  position_std_m_ = measurement.position_std_m;
+  attitude_std_rad_ = measurement.attitude_std_rad;
   replay(*age);
   ++counters_.fused;
   ++good_since_start_;
@@ -224,57 +273,6 @@ PoseVerdict ErrorStateFilter::update(const PoseMeasurement& measurement) {
   last_good_ns_ = std::max(last_good_ns_, measurement.stamp_ns);
   refresh_mode();
   return PoseVerdict::fused;
-}
-
-bool ErrorStateFilter::converged() const {
-  const auto within = [&](int k, double std_max) {
-    return newest().P.diagonal().segment<3>(k).maxCoeff() < std_max * std_max;
-  };
-  return good_since_start_ >= config_.ready_measurements && within(P, config_.ready_position_std_m) &&
-         within(V, config_.ready_velocity_std_m_s) && within(R, config_.ready_attitude_std_rad);
-}
-
-void ErrorStateFilter::refresh_mode() {
-  if (!started_) {
-    mode_ = was_ready_ ? FilterMode::lost : FilterMode::initialising;
-    return;
-  }
-  const double age_s = seconds(newest().imu.stamp_ns - last_good_ns_);
-  const double position_variance = newest().P.diagonal().segment<3>(P).maxCoeff();
-  if (age_s > config_.lost_s || position_variance > config_.lost_position_std_m * config_.lost_position_std_m) {
-    mode_ = FilterMode::lost;
-  } else if (mode_ == FilterMode::initialising || mode_ == FilterMode::lost) {
-    mode_ = converged() ? FilterMode::ready : FilterMode::initialising;
-  } else {
-    mode_ = age_s > config_.dead_reckoning_s ? FilterMode::dead_reckoning : FilterMode::ready;
-  }
-  was_ready_ = was_ready_ || mode_ == FilterMode::ready;
-}
-
-Estimate ErrorStateFilter::estimate() const {
-  const Entry& e = newest();
-  Estimate out;
-  out.stamp_ns = e.imu.stamp_ns;
-  out.mode = mode_;
-  out.X_WB = {e.x.p, e.x.R};
-  out.v_WB = e.x.v;
-  out.a_WB = e.x.R * (e.imu.specific_force_B_m_s2 - e.x.ba) + gravity_W;
-  out.w_WB_B = e.imu.w_WB_B_rad_s - e.x.bg;
-  out.gyroscope_bias = e.x.bg;
-  out.accelerometer_bias = e.x.ba;
-  // The rate's noise is that of one sample; its spacing is taken from the buffer.
-  const Entry& before = buffer_[(head_ + buffer_.size() - 1) % buffer_.size()];
-  const double dt = count_ > 1 ? seconds(e.imu.stamp_ns - before.imu.stamp_ns) : 0.002;
-  const double rate_variance = config_.gyroscope_noise_rad_s_rtHz * config_.gyroscope_noise_rad_s_rtHz / dt;
-  for (int k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    out.variance[i] = e.P(P + k, P + k);
-    out.variance[i + 3] = e.P(R + k, R + k);
-    out.variance[i + 6] = e.P(V + k, V + k);
-    out.variance[i + 9] = e.P(BG + k, BG + k) + rate_variance;
-  }
-  out.pose_age_s = started_ ? seconds(e.imu.stamp_ns - last_good_ns_) : 0;
-  return out;
 }
 
 }  // namespace eciton::estimation

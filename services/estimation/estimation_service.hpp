@@ -14,6 +14,7 @@
 #include "services/estimation/contact_wrench.hpp"
 #include "services/estimation/error_state_filter.hpp"
 #include "services/estimation/momentum_observer.hpp"
+#include "services/estimation/sensor_watch.hpp"
 #include "services/estimation/zeroing.hpp"
 
 namespace eciton::estimation {
@@ -22,13 +23,17 @@ struct EstimationConfig {
   std::uint32_t module_id = 0;
   double wrench_rate_Hz = 100;
   double observer_gain_1_s = 10;
-  bool zeroing = true;  // false: a controller on wrenches that were never zeroed (an experiment's control)
+  bool zeroing = true;         // false: a controller on wrenches that were never zeroed (an experiment's control)
+  bool refuses_frozen = true;  // false: for a world whose sensors have no noise
+  double imu_silent_s = 0.05;  // without a good sample: the state is lost
 
   template <class V>
   void visit_fields(V& v) {
     v("wrench_rate_Hz", wrench_rate_Hz, in_range(10, 500));
     v("observer_gain_1_s", observer_gain_1_s, in_range(0.5, 50));
     v("zeroing", zeroing);
+    v("refuses_frozen", refuses_frozen);
+    v("imu_silent_s", imu_silent_s, in_range(0.01, 0.1));
   }
 };
 
@@ -42,23 +47,38 @@ class EstimationService final : public runtime::Service {
     return runtime::on(imu_, 5ms, runtime::Phase::estimate);
   }
   void step(TimePoint now) noexcept override;
+  void describe(msg::Heartbeat& heartbeat) const noexcept override;
   /// The zero, which cannot be measured again in a chain.
   std::uint32_t state_version() const noexcept override { return 1; }
   void save_state(runtime::StateWriter& writer) const noexcept override { writer(last_step_, zeroing_); }
   void load_state(runtime::StateReader& reader) noexcept override;
 
  private:
-  void take_actuators() noexcept;
+  void take_actuators(TimePoint now) noexcept;
   void take_chain(TimePoint now) noexcept;
-  void take_sensors() noexcept;
+  void take_zero_requests(TimePoint now) noexcept;
+  void take_sensors(TimePoint now) noexcept;
+  void take_imu(const msg::Imu& imu, TimePoint now) noexcept;
+  void take_pose(const msg::PoseMeasurement& pose, TimePoint now) noexcept;
+  void watch_silence(TimePoint now) noexcept;
+  void watch_bus(TimePoint now) noexcept;
   void observe(TimePoint now) noexcept;
-  void zero(double dt_s) noexcept;
+  void zero(double dt_s, TimePoint now) noexcept;
   void publish_state(TimePoint now) noexcept;
   void publish_external_wrench(TimePoint now) noexcept;
   void publish_contact_wrench(TimePoint now) noexcept;
-  bool free_flight() const;
+  /// Why the wrench cannot be zeroed now, or null.
+  const char* not_free() const;
   std::span<const double> joint_angles() const { return std::span(joint_rad_).first(airframe_.joints.size()); }
   void report_mode(TimePoint now) noexcept;
+  void report_zeroing(ZeroingPhase before, TimePoint now) noexcept;
+  void report_refusals(TimePoint now) noexcept;
+  void answer_zero(std::uint64_t correlation_id, msg::GoalPhase phase, std::string_view reason,
+                   TimePoint now) noexcept;
+
+  /// Whose samples are refused.
+  enum class Device { imu, pose, joints, rotors, peers, output, count };
+  RefusalSpell& spell(Device device) { return spells_[static_cast<std::size_t>(device)]; }
 
   EstimationConfig config_;
   robot::Airframe airframe_;
@@ -66,6 +86,9 @@ class EstimationService final : public runtime::Service {
   ErrorStateFilter filter_;
   MomentumObserver observer_;
   Zeroing zeroing_;
+  ImuCheck imu_check_;
+  PoseCheck pose_check_;
+  std::array<RefusalSpell, static_cast<std::size_t>(Device::count)> spells_;
   robot::ActuatorLag rotors_;
   std::array<robot::RotorOutput, robot::rotors_max> rotor_command_{};
   bool armed_ = false;
@@ -85,7 +108,12 @@ class EstimationService final : public runtime::Service {
   std::array<TimePoint, 16> heard_at_{};
 
   bool zero_asked_ = false;
+  std::uint64_t zero_goal_ = 0;  // to answer; 0: none
+  std::uint64_t zero_answered_ = 0;
   bool zeroing_interrupted_ = false;
+  std::optional<TimePoint> imu_heard_, pose_heard_;   // good or not, to 10 ms
+  bus::ReaderStatistics imu_dropped_, pose_dropped_;  // by the bus, when last looked at
+  std::int64_t observed_ns_ = 0;                      // the state the observer last saw
 
   TimePoint last_step_{};
   TimePoint saved_at_{};  // of the checkpoint it goes on from
@@ -104,7 +132,9 @@ class EstimationService final : public runtime::Service {
   bus::Writer<msg::ModuleState> module_state_;
   bus::Writer<msg::ExternalWrench> external_wrench_;
   bus::Writer<msg::ContactWrench> contact_wrench_;
+  bus::Writer<msg::GoalStatus> goal_status_;
   bus::Writer<msg::Event> event_;
+  bus::Writer<msg::Fault> fault_;
 };
 
 }  // namespace eciton::estimation

@@ -27,8 +27,9 @@ class MomentumObserver {
  public:
   explicit MomentumObserver(const MomentumObserverConfig& config = {}) : config_(config) {}
 
-  /// `input` at the end of an interval of `dt_s`; the known wrench over it is the mean of both ends'.
-  void update(const MomentumInput& input, double dt_s);
+  /// `input` at the end of an interval of `dt_s`; the known wrench over it is the mean of both ends'. False: not
+  /// finite, and left alone.
+  [[nodiscard]] bool update(const MomentumInput& input, double dt_s);
   /// The velocity is about to jump (the filter restarted): the next update only takes the momentum.
   void hold() { has_momentum_ = false; }
   void reset();

@@ -43,6 +43,7 @@ class HostBench {
   void tick() {
     now += bench_tick;
     readings.stamp = readings.imu.stamp = now;
+    ++readings.imu_count;
     board.set_sensors(readings);
     network_.advance(now);
     ring.set_now(now);

@@ -46,7 +46,7 @@ TEST(SenseServiceTest, PublishesAPoseWhenItArrivesStampedWhenItWasMeasured) {
   Ears ears(bench);
   bench.tick();
   EXPECT_FALSE(ears.pose.take().has_value()) << "none came yet";
-  bench.readings.has_pose = true;
+  bench.readings.pose_count = 1;
   bench.readings.pose = {
       .stamp = bench.now - 30ms, .source = PoseSourceKind::lio, .p_WB_m = {1, 2, 3}, .position_std_m = 0.01};
   bench.tick();
@@ -128,7 +128,7 @@ TEST(SenseServiceTest, IsSilentWithoutConfiguredDevices) {
   HostBench bench;
   Ears ears(bench);
   bench.devices = sim::make_devices(bench.board, bench.airframe);
-  bench.readings.has_pose = true;
+  bench.readings.pose_count = 1;
   bench.readings.pose.stamp = bench.now;
   bench.tick_for(100ms);
   EXPECT_FALSE(ears.imu.take().has_value());

@@ -10,7 +10,7 @@ namespace {
 
 TEST(DevicesTest, NothingWorksBeforeItIsConfiguredAndNothingActsBeforeItIsActive) {
   Board board;
-  SimRotorBus rotors(board, 3);
+  SimRotorBus rotors(board, 3, robot::thrust_map(robot::legion()));
   SimJointBus joints(board, 2);
   SimLatch latch(board, 0);
   SimImu imu(board);
@@ -35,7 +35,7 @@ TEST(DevicesTest, NothingWorksBeforeItIsConfiguredAndNothingActsBeforeItIsActive
 
 TEST(DevicesTest, RefuseMoreThanAFrameHolds) {
   Board board;
-  SimRotorBus rotors(board, 9);
+  SimRotorBus rotors(board, 9, robot::thrust_map(robot::legion()));
   SimLatch latch(board, 4);
   EXPECT_NE(rotors.configure().error().message.find("9 of them; a frame holds 8"), std::string::npos);
   EXPECT_FALSE(latch.configure());
@@ -43,7 +43,7 @@ TEST(DevicesTest, RefuseMoreThanAFrameHolds) {
 
 TEST(DevicesTest, DeactivatedRotorsAreDisarmedAndLatchesHold) {
   Board board;
-  SimRotorBus rotors(board, 3);
+  SimRotorBus rotors(board, 3, robot::thrust_map(robot::legion()));
   SimJointBus joints(board, 2);
   SimLatch latch(board, 1);
   ASSERT_TRUE(rotors.configure() && joints.configure() && latch.configure());
@@ -81,7 +81,7 @@ TEST(DevicesTest, GiveEachReadingOnce) {
   DirectLink link(world, 1);
   SimImu imu(link.board());
   SimPoseSource pose(link.board());
-  SimRotorBus rotors(link.board(), 3);
+  SimRotorBus rotors(link.board(), 3, robot::thrust_map(robot::legion()));
   ASSERT_TRUE(imu.configure() && pose.configure() && rotors.configure());
   ImuReading imu_reading;
   PoseReading pose_reading;
@@ -105,10 +105,35 @@ TEST(DevicesTest, GiveEachReadingOnce) {
   EXPECT_EQ(pose_reading.source, PoseSourceKind::mocap);
 }
 
+TEST(DevicesTest, ThrustBecomesAThrottleAtTheVoltageThatIsRead) {
+  const robot::ThrustMap map = robot::thrust_map(robot::legion());
+  const std::array<RotorSetpoint, 3> thrust{{{.thrust_N = 12}, {.thrust_N = 12}, {.thrust_N = 0}}};
+  for (const bool compensates : {true, false}) {
+    Board board;
+    SensorFrame frame;
+    frame.rotors[0].battery_V = 25;
+    board.set_sensors(frame);
+    SimRotorBus rotors(board, 3, map, compensates);
+    ASSERT_TRUE(rotors.configure() && rotors.activate());
+    ASSERT_EQ(rotors.write(thrust), Io::ok);
+    EXPECT_NEAR(map.thrust_N(board.actuators().throttle_percent[1], 25), 12, 1e-9);
+    EXPECT_EQ(board.actuators().throttle_percent[2], map.percent_min);
+    frame.rotors[0].battery_V = 22.5;
+    board.set_sensors(frame);
+    for (int k = 0; k < 1000; ++k) ASSERT_EQ(rotors.write(thrust), Io::ok);
+    const double made_N = map.thrust_N(board.actuators().throttle_percent[1], 22.5);
+    if (compensates) {
+      EXPECT_NEAR(made_N, 12, 1e-3);
+    } else {
+      EXPECT_LT(made_N, 0.92 * 12);
+    }
+  }
+}
+
 TEST(DirectLinkTest, FliesAModuleThroughItsDevices) {
   World world(still_world(), robot::legion(), {{.id = 1, .p_WB_m = {0, 0, 2}, .hovering = true}});
   DirectLink link(world, 1);
-  SimRotorBus rotors(link.board(), 3);
+  SimRotorBus rotors(link.board(), 3, robot::thrust_map(robot::legion()));
   SimLatch latch(link.board(), 0);
   link.sense();
   ASSERT_TRUE(rotors.configure() && latch.configure() && rotors.activate() && latch.activate());

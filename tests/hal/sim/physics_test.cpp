@@ -79,6 +79,21 @@ TEST(WorldTest, HoverTakesTheWeightAndNoMore) {
   EXPECT_NEAR(sum_N, 3.915 * 9.81, 0.05);
 }
 
+TEST(WorldTest, BatterySagsUnderLoadAndRunsDown) {
+  // 25 V, 6 V a minute and 0.5 V of sag while hovering: 24.5 V at first, 23.5 V after ten seconds.
+  WorldConfig config = still_world();
+  config.battery = {.start_V = 25, .discharge_V_min = 6, .sag_V = 0.5, .noise_V = 0};
+  World world(config, robot::legion(), {{.id = 1, .p_WB_m = {0, 0, 1.5}, .hovering = true}});
+  EXPECT_NEAR(world.sense(1).rotors[0].battery_V, 24.5, 1e-9);
+  std::vector<Pilot> pilots{{world, 1}};
+  fly(world, pilots, 10);
+  EXPECT_NEAR(world.sense(1).rotors[0].battery_V, 23.5, 0.03);
+  EXPECT_NEAR(world.truth_pose(1).p_WM_m.z(), 1.5, 0.01);
+  world.cut(1);
+  world.advance(world.now() + 200ms);
+  EXPECT_NEAR(world.sense(1).rotors[0].battery_V, 24, 0.05) << "without load it recovers the sag";
+}
+
 TEST(WorldTest, LandsGentlyAndLiesStillAfterDisarming) {
   World world(still_world(), robot::legion(), {{.id = 1, .p_WB_m = {0, 0, 0.5}, .hovering = true}});
   std::vector<Pilot> pilots{{world, 1}};
@@ -132,7 +147,7 @@ TEST(WorldTest, ThrustStepGivesTheMomentumOfTheClosedForm) {
   const robot::Airframe airframe = robot::legion();
   ActuatorFrame frame = hover_frame(LatchCommand::hold);
   const std::array<double, 3> step_N{3, -2, 1};
-  for (std::size_t k = 0; k < 3; ++k) frame.rotors[k].thrust_N += step_N[k];
+  for (std::size_t k = 0; k < 3; ++k) set_thrust(frame, k, frame.rotors[k].thrust_N + step_N[k]);
   world.actuate(1, frame);
   const double t = 0.1;
   world.advance(world.now() + from_s(t));

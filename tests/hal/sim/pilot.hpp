@@ -8,6 +8,7 @@
 
 #include "core/robot/kinematics.hpp"
 #include "hal/sim/world.hpp"
+#include "tests/hal/sim/worlds.hpp"
 
 namespace eciton::hal::sim {
 
@@ -55,11 +56,12 @@ class Pilot {
     }
     robot::Vector6 wanted;
     wanted << force_B, moment_B;
+    const double battery_V = world_.sense(module_).rotors[0].battery_V;
     const Eigen::Matrix<double, 9, 1> lambda = Q.transpose() * (Q * Q.transpose()).ldlt().solve(wanted);
     for (std::size_t k = 0; k < 3; ++k) {
       const robot::Vector3 l = lambda.segment<3>(3 * static_cast<int>(k));
       const double phi = std::atan2(-l.y(), l.z());
-      frame.rotors[k].thrust_N = l.norm();
+      set_thrust(frame, k, l.norm(), battery_V);
       frame.rotors[k].gimbal_rad = {phi, std::atan2(l.x(), -l.y() * std::sin(phi) + l.z() * std::cos(phi))};
     }
   }

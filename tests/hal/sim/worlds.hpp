@@ -2,11 +2,14 @@
 #pragma once
 
 #include "core/robot/kinematics.hpp"
+#include "core/robot/thrust_map.hpp"
 #include "hal/sim/world.hpp"
 
 namespace eciton::hal::sim {
 
 constexpr TimePoint at_ms(std::int64_t ms) { return from_ns(1'000'000 * ms); }
+
+constexpr double still_battery_V = 24.2;
 
 /// No model errors, no noise, no wind, no wakes: what a pencil can compute.
 inline WorldConfig still_world() {
@@ -14,6 +17,7 @@ inline WorldConfig still_world() {
   config.world = "ideal";
   config.wakes = false;
   config.noise = 0;
+  config.battery = {.start_V = still_battery_V, .discharge_V_min = 0, .sag_V = 0, .noise_V = 0};
   return config;
 }
 
@@ -32,10 +36,17 @@ inline std::vector<ModuleStart> nose_to_tail(const robot::Vector3& p_PF_m, doubl
           {.id = 2, .p_WB_m = {p_WB.x(), p_WB.y(), p_WB.z()}, .yaw_rad = yaw_rad, .hovering = true}};
 }
 
+/// The throttle that makes this thrust, as a hardware host would send it.
+inline void set_thrust(ActuatorFrame& frame, std::size_t rotor, double thrust_N, double battery_V = still_battery_V) {
+  static const robot::ThrustMap map = robot::thrust_map(robot::legion());
+  frame.rotors[rotor].thrust_N = thrust_N;
+  frame.throttle_percent[rotor] = map.percent(thrust_N, battery_V);
+}
+
 inline ActuatorFrame hover_frame(LatchCommand latch) {
   ActuatorFrame frame;
   frame.armed = frame.joints_powered = true;
-  for (std::size_t k = 0; k < 3; ++k) frame.rotors[k].thrust_N = robot::legion().hover_thrust_N();
+  for (std::size_t k = 0; k < 3; ++k) set_thrust(frame, k, robot::legion().hover_thrust_N());
   frame.latches = {latch, latch, LatchCommand::hold, LatchCommand::hold};
   return frame;
 }

@@ -216,14 +216,98 @@ TEST(ErrorStateFilterTest, RefusesAndCountsWhatItCannotUse) {
   PoseMeasurement skewed = pose_at(399, Vector3::Zero());
   skewed.X_WB.R(0, 0) = 2;
   EXPECT_EQ(filter.update(skewed), PoseVerdict::invalid);
-  EXPECT_FALSE(filter.update(ImuSample{399 * 2'000'000ll, {0, 0, 9.81}, Vector3::Zero()}));
-  EXPECT_FALSE(
-      filter.update(ImuSample{401 * 2'000'000ll, {0, 0, std::numeric_limits<double>::infinity()}, Vector3::Zero()}));
+  EXPECT_EQ(filter.update(ImuSample{399 * 2'000'000ll, {0, 0, 9.81}, Vector3::Zero()}), ImuVerdict::repeated);
+  EXPECT_EQ(filter.update(ImuSample{398 * 2'000'000ll, {0, 0, 9.81}, Vector3::Zero()}), ImuVerdict::backward);
+  EXPECT_EQ(
+      filter.update(ImuSample{401 * 2'000'000ll, {0, 0, std::numeric_limits<double>::infinity()}, Vector3::Zero()}),
+      ImuVerdict::invalid);
   const FilterCounters& c = filter.counters();
   EXPECT_EQ(c.too_old, 1u);
   EXPECT_EQ(c.too_new, 1u);
   EXPECT_EQ(c.invalid, 2u);
-  EXPECT_EQ(c.imu_refused, 2u);
+  EXPECT_EQ(c.imu_refused, 3u);
+}
+
+TEST(ErrorStateFilterTest, RefusesDeviationsThatAreNone) {
+  ErrorStateFilter filter;
+  hover(filter, 0, 100);
+  for (const double deviation : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    PoseMeasurement m = pose_at(90, Vector3::Zero());
+    m.position_std_m = deviation;
+    EXPECT_EQ(filter.update(m), PoseVerdict::invalid) << deviation;
+    m = pose_at(90, Vector3::Zero());
+    m.attitude_std_rad = deviation;
+    EXPECT_EQ(filter.update(m), PoseVerdict::invalid) << deviation;
+  }
+  EXPECT_EQ(filter.update(pose_at(90, Vector3::Zero())), PoseVerdict::started);
+}
+
+TEST(ErrorStateFilterTest, OnePoseCountsOnce) {
+  ErrorStateFilter filter;
+  hover(filter, 0, 100);
+  EXPECT_EQ(filter.update(pose_at(80, Vector3::Zero())), PoseVerdict::started);
+  EXPECT_EQ(filter.update(pose_at(80, Vector3::Zero())), PoseVerdict::repeated);
+  EXPECT_EQ(filter.update(pose_at(90, Vector3::Zero())), PoseVerdict::fused);
+  const ErrorStateFilter::Covariance P = filter.covariance();
+  EXPECT_EQ(filter.update(pose_at(90, Vector3::Zero())), PoseVerdict::repeated);
+  EXPECT_EQ(filter.covariance(), P);
+  EXPECT_EQ(filter.counters().repeated, 2u);
+}
+
+TEST(ErrorStateFilterTest, AClockSetBackIsNoticedAndOneStampFromTheFutureIsNoEnd) {
+  ErrorStateFilter filter;
+  for (int k = 1000; k < 1500; k += 5) {
+    hover(filter, k, k + 5);
+    filter.update(pose_at(k + 4, Vector3::Zero()));
+  }
+  EXPECT_EQ(filter.estimate().mode, FilterMode::ready);
+  hover(filter, 9000, 9001);  // a stamp 15 s ahead
+  hover(filter, 1500, 1524);
+  EXPECT_EQ(filter.counters().imu_refused, 24u);
+  hover(filter, 1524, 1530);  // the 25th in order is believed
+  EXPECT_EQ(filter.counters().imu_refused, 24u);
+  EXPECT_EQ(filter.estimate().stamp_ns, 1529 * 2'000'000ll);
+  for (int k = 1530; k < 1600; k += 5) {
+    hover(filter, k, k + 5);
+    filter.update(pose_at(k + 4, Vector3::Zero()));
+  }
+  EXPECT_EQ(filter.estimate().mode, FilterMode::ready);
+}
+
+TEST(ErrorStateFilterTest, StampsThatRunBackwardNeverGetThrough) {
+  ErrorStateFilter filter;
+  hover(filter, 1000, 1010);
+  for (int k = 1000; k > 500; --k) hover(filter, k, k + 1);
+  EXPECT_EQ(filter.counters().imu_refused, 500u);
+  EXPECT_EQ(filter.estimate().stamp_ns, 1009 * 2'000'000ll);
+}
+
+TEST(ErrorStateFilterTest, ANewStartDropsBiasesThatNoSensorHas) {
+  // Poses that accelerate away while the IMU rests: all of it is taken for a bias, until they come back.
+  ErrorStateFilterConfig config;
+  config.gate_chi2 = 1e9;
+  ErrorStateFilter filter(config);
+  for (int k = 0; k < 2000; k += 5) {
+    hover(filter, k, k + 5);
+    const double t = (k + 4) * 0.002;
+    filter.update(pose_at(k + 4, {0.5 * 2 * t * t, 0, 0}));
+  }
+  EXPECT_GT(filter.estimate().accelerometer_bias.norm(), 1);
+  hover(filter, 2100, 2110);  // a gap: lost
+  EXPECT_EQ(filter.update(pose_at(2109, Vector3::Zero())), PoseVerdict::started);
+  EXPECT_EQ(filter.estimate().accelerometer_bias.norm(), 0);
+}
+
+TEST(ErrorStateFilterTest, ClaimsNoPoseBetterThanOneMeasurement) {
+  ErrorStateFilter filter;
+  for (int k = 0; k < 1000; k += 5) {
+    hover(filter, k, k + 5);
+    PoseMeasurement m = pose_at(k + 4, Vector3::Zero());
+    m.position_std_m = 0.01;
+    filter.update(m);
+  }
+  EXPECT_LT(filter.covariance()(0, 0), 0.5e-4);
+  EXPECT_NEAR(filter.estimate().variance[0], 1e-4, 1e-12);
 }
 
 TEST(ErrorStateFilterTest, AGapInTheImuForcesANewStart) {

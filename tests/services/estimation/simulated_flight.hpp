@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <random>
 
 #include "core/robot/rotation_vector.hpp"
@@ -64,7 +65,9 @@ class SimulatedFlight {
       imu(dt);
       if (t >= next_pose_s_ - 1e-9) measure();
       while (!in_flight_.empty() && in_flight_.front().second <= t + 1e-9) {
-        if (poses_on) filter.update(in_flight_.front().first);
+        if (poses_on && filter.update(in_flight_.front().first) == PoseVerdict::fused && on_fused) {
+          on_fused(filter.innovation());
+        }
         in_flight_.pop_front();
       }
     }
@@ -81,6 +84,8 @@ class SimulatedFlight {
 
   double t = 0;
   bool poses_on = true;
+  Vector3 jump = Vector3::Zero();  // of the pose source's origin
+  std::function<void(const Innovation&)> on_fused;
   Vector3 gyroscope_bias, accelerometer_bias;
 
  private:
@@ -107,15 +112,16 @@ class SimulatedFlight {
   }
 
   void measure() {
+    const double at = next_pose_s_;
     next_pose_s_ += 1 / config_.pose_Hz;
-    const Truth truth = truth_at(t);
+    const Truth truth = truth_at(at);
     PoseMeasurement m;
-    m.stamp_ns = ns(config_.stamped_on_arrival ? t + config_.latency_s : t);
-    m.X_WB.p = truth.p + drift_ + noise(config_.position_std_m);
+    m.stamp_ns = ns(config_.stamped_on_arrival ? at + config_.latency_s : at);
+    m.X_WB.p = truth.p + jump + drift_ + noise(config_.position_std_m);
     m.X_WB.R = truth.R * robot::exp_so3(config_.attitude_bias_rad) * robot::exp_so3(noise(config_.attitude_std_rad));
     m.position_std_m = config_.claimed_share * config_.position_std_m;
     m.attitude_std_rad = config_.claimed_share * config_.attitude_std_rad;
-    in_flight_.emplace_back(m, t + config_.latency_s);
+    in_flight_.emplace_back(m, at + config_.latency_s);
   }
 
   FlightConfig config_;
