@@ -74,4 +74,8 @@ GoalReport Pilot::dock(std::uint32_t follower, std::uint32_t target, double limi
   return *operator_.report(goal);
 }
 
+Still Pilot::still(const std::string& title) {
+  return {.title = title, .time_s = simulation_.elapsed_s(), .posture = simulation_.world().posture()};
+}
+
 }  // namespace eciton::deploy

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "deploy/experiments/experiment.hpp"
 #include "deploy/operator/operator.hpp"
 #include "deploy/simulation.hpp"
 
@@ -27,6 +28,9 @@ class Pilot {
   void bring_to_hover(const std::vector<double>& heights_m);
   /// Docks, asking again while it is refused for want of zeroing. The report of the last goal.
   GoalReport dock(std::uint32_t follower, std::uint32_t target, double limit_s);
+
+  /// The moment as it is, to be drawn after the run. Asking changes nothing.
+  Still still(const std::string& title);
 
   Operator& op() { return operator_; }
   const KnownFleet& fleet() const { return operator_.fleet(); }
