@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-namespace eciton::bench {
+namespace eciton::report {
 
 class Svg {
  public:
@@ -44,4 +44,4 @@ class Svg {
   std::string text_;
 };
 
-}  // namespace eciton::bench
+}  // namespace eciton::report

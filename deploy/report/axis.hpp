@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace eciton::bench {
+namespace eciton::report {
 
 struct Tick {
   double value;
@@ -30,4 +30,4 @@ class Axis {
   bool logarithmic_ = false;
 };
 
-}  // namespace eciton::bench
+}  // namespace eciton::report

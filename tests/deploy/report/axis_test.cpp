@@ -1,11 +1,11 @@
 // Where values stand on an axis, and what is written beside it.
-#include "benchmarks/report/axis.hpp"
+#include "deploy/report/axis.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace eciton::bench {
+namespace eciton::report {
 namespace {
 
 std::vector<double> values(const Axis& axis) {
@@ -50,4 +50,4 @@ TEST(AxisTest, LabelsAreShort) {
 }
 
 }  // namespace
-}  // namespace eciton::bench
+}  // namespace eciton::report

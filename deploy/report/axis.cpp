@@ -1,13 +1,13 @@
 // Ticks at 1, 2 and 5 times the powers of ten.
-#include "benchmarks/report/axis.hpp"
+#include "deploy/report/axis.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "benchmarks/report/result.hpp"
+#include "deploy/report/text.hpp"
 
-namespace eciton::bench {
+namespace eciton::report {
 namespace {
 
 /// Without the zeros that a measured figure would keep.
@@ -75,4 +75,4 @@ std::vector<Tick> Axis::ticks() const {
   return out;
 }
 
-}  // namespace eciton::bench
+}  // namespace eciton::report
