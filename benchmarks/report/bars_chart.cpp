@@ -3,8 +3,8 @@
 #include <cmath>
 #include <set>
 
-#include "deploy/report/axis.hpp"
 #include "benchmarks/report/charts.hpp"
+#include "deploy/report/axis.hpp"
 #include "deploy/report/svg.hpp"
 
 namespace eciton::bench {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <span>
 
+#include "benchmarks/statistics/summary.hpp"
 #include "deploy/report/axis.hpp"
 #include "deploy/report/svg.hpp"
-#include "benchmarks/statistics/summary.hpp"
 
 namespace eciton::bench {
 namespace {

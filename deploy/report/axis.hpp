@@ -18,6 +18,9 @@ class Axis {
   static Axis around(double least, double greatest);
   static Axis from_zero(double greatest);
   static Axis exactly(double least, double greatest);
+  /// Holds them with a little room, from zero where they are on one side of it.
+  static Axis with_room(double least, double greatest);
+  static Axis of_logarithms(double least, double greatest);
 
   bool logarithmic() const { return logarithmic_; }
   /// 0 at the lower end, 1 at the upper, and never beyond.
