@@ -4,6 +4,7 @@
 
 #include "deploy/experiments/experiment.hpp"
 #include "deploy/experiments/pilot.hpp"
+#include "deploy/experiments/report/plots.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -156,6 +157,7 @@ const Experiment docking_experiment{.name = "docking",
                                     .has_trials = true,
                                     .breaks = {"weld-off", "claims-muted"},
                                     .run_trial = &run_trial,
-                                    .summarise = &summarise};
+                                    .summarise = &summarise,
+                                    .plots = &docking_plots};
 
 }  // namespace eciton::deploy

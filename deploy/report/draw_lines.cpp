@@ -33,7 +33,7 @@ double band_at(const Trace& trace, std::size_t i) {
 }
 
 double shown(const Trace& trace, std::size_t i) {
-  return trace.cut_off > 0 && !(trace.y[i] <= trace.cut_off) ? trace.cut_off : trace.y[i];
+  return trace.cut_off > 0 && !(trace.y[i] < trace.cut_off) ? trace.cut_off : trace.y[i];
 }
 
 Axis y_axis_of(const Lines& lines) {
@@ -103,7 +103,7 @@ void draw_trace(Svg& svg, const Frame& frame, const Trace& trace, const std::str
   if (trace.style != TraceStyle::points) return;
   for (const std::size_t i : kept) {
     if (!std::isfinite(trace.x[i]) || std::isnan(trace.y[i])) continue;
-    const bool open = shown(trace, i) != trace.y[i];
+    const bool open = trace.cut_off > 0 && trace.y[i] >= trace.cut_off;
     svg.dot(frame.x(trace.x[i]), frame.y(shown(trace, i)), open ? 5 : 4, (open ? "open " : "fill ") + colour);
   }
 }

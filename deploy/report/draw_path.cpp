@@ -102,7 +102,7 @@ Drawing draw_path(const Path& path, const std::string& title) {
   const bool side = path.z_m.size() >= 2;
   // One scale for both panels and both directions, and some room around the path.
   const double tallest_m = 1.12 * std::max(y.size(), side ? z.size() : 0.0);
-  double m_per_pixel = std::max(1.12 * x.size() / panel_width, tallest_m / panel_height_max);
+  const double m_per_pixel = std::max(1.12 * x.size() / panel_width, tallest_m / panel_height_max);
   const double panel_height = std::max(tallest_m / m_per_pixel, panel_height_min);
   const std::vector<LegendEntry> entries{{"reference", "reference"}};
   const double top = 50, bottom = top + panel_height, left = 70;

@@ -15,7 +15,7 @@ struct Trace {
   std::vector<double> x, y;
   std::vector<double> band = {};
   TraceStyle style = TraceStyle::solid;
-  /// Values above this are drawn at it, with an open marker: "no convergence in 60 s". 0: none.
+  /// Values from this on are drawn at it, with an open marker: "no convergence in 60 s". 0: none.
   double cut_off = 0;
   /// Traces that belong together (a truth and its estimate) share a colour; negative: the next free one.
   int colour = -1;
