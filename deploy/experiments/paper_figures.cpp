@@ -10,6 +10,8 @@
 namespace eciton::deploy {
 namespace {
 
+using report::figure_text;
+
 using Rows = std::vector<PaperFigure>;
 
 Rows tracking(const RunConditions& run) {
@@ -34,8 +36,8 @@ Rows morph(const RunConditions& run) {
   return {{.metric = "contact_force_N_mean", .paper = "< 0.3 N", .most = run.wakes ? 0.3 : 0.12},
           {.metric = "contact_torque_Nm_mean", .paper = "about 0.05 Nm", .most = run.wakes ? 0.05 : 0.03},
           {.metric = "joint_torque_Nm_mean", .most = 0.10},
-          {.metric = "joint_torque_Nm_max", .paper = "<= 0.3 Nm", .most = 0.30},
-          {.metric = "joint_speed_rad_s_max", .paper = "<= 0.12 rad/s"},
+          {.metric = "joint_torque_Nm_max", .paper = "≤ 0.3 Nm", .most = 0.30},
+          {.metric = "joint_speed_rad_s_max", .paper = "≤ 0.12 rad/s"},
           {.metric = "base_position_error_m_mean", .paper = "0.06 m", .most = 0.015},
           {.metric = "base_attitude_error_rad_mean", .paper = "0.02 rad", .most = 0.02},
           {.metric = "assembled", .paper = "yes", .least = 1},
@@ -94,13 +96,13 @@ Rows forest(const RunConditions&) {
 }
 
 std::string bar_text(const PaperFigure& figure) {
-  const std::string of = figure.of.empty() ? "" : " x " + figure.of;
+  const std::string of = figure.of.empty() ? "" : " × " + figure.of;
   const auto side = [&](const char* sign, double bar) {
     return std::string(sign) + " " + (bar == 1 && !of.empty() ? figure.of : figure_text(bar) + of);
   };
   std::string text;
-  if (figure.least) text = side(">=", *figure.least);
-  if (figure.most) text += (text.empty() ? "" : ", ") + side("<=", *figure.most);
+  if (figure.least) text = side("≥", *figure.least);
+  if (figure.most) text += (text.empty() ? "" : ", ") + side("≤", *figure.most);
   return text;
 }
 
@@ -150,14 +152,6 @@ std::vector<JudgedMetric> judge(const std::string& experiment, const RunConditio
     }
   }
   return judged;
-}
-
-std::string figure_text(double value) {
-  if (value == std::round(value) && std::abs(value) < 1e9) {
-    const std::string digits = report::grouped(std::to_string(std::llabs(std::llround(value))));
-    return value < 0 ? "-" + digits : digits;
-  }
-  return report::number_text(value);
 }
 
 std::string to_text(Verdict verdict) {

@@ -39,9 +39,6 @@ struct JudgedMetric {
 std::vector<JudgedMetric> judge(const std::string& experiment, const RunConditions& conditions,
                                 const std::map<std::string, double>& metrics);
 
-/// A count without decimals, else three significant digits.
-std::string figure_text(double value);
-
 std::string to_text(Verdict verdict);  // "met", "missed", ""
 
 }  // namespace eciton::deploy

@@ -106,8 +106,8 @@ Drawing draw_distributions(const Distributions& given, const std::string& title)
     draw_box(svg, frame, columns[i].values, place, colour);
     svg.words(place.middle, frame.bottom + 18, "middle", escaped(columns[i].name), "label");
     const std::string figures =
-        "mean " + number_text(mean(columns[i].values)) + ", n = " + grouped(std::to_string(columns[i].values.size()));
-    const std::string short_figures = number_text(mean(columns[i].values));
+        "mean " + figure_text(mean(columns[i].values)) + ", n = " + grouped(std::to_string(columns[i].values.size()));
+    const std::string short_figures = figure_text(mean(columns[i].values));
     svg.words(place.middle, frame.bottom + 35, "middle", width_of(figures) < step ? figures : short_figures, "tick");
   }
   if (!given.x_label.empty()) {

@@ -59,13 +59,12 @@ Axis y_axis_of(const Lines& lines) {
 }
 
 /// The traces' own; a tolerance beyond them is cut.
-Axis x_axis_of(const Lines& lines) {
+Extent x_extent_of(const Lines& lines) {
   Extent extent;
   for (const Trace& trace : lines.traces) {
     for (std::size_t i = 0; i < size_of(trace); ++i) extent.add(trace.x[i]);
   }
-  if (lines.x_whole) return Axis::exactly(extent.least - 0.5, extent.greatest + 0.5);
-  return Axis::exactly(extent.least, extent.greatest);
+  return extent;
 }
 
 std::string css_of(const Trace& trace) {
@@ -150,14 +149,21 @@ Drawing draw_lines(const Lines& given, const std::string& title) {
   Lines lines = given;
   std::erase_if(lines.traces, [](const Trace& trace) { return size_of(trace) == 0; });
   std::sort(lines.marks.begin(), lines.marks.end(), [](const Mark& a, const Mark& b) { return a.at < b.at; });
-  if (lines.traces.empty()) return {};
+  if (lines.traces.empty() || x_extent_of(lines).empty()) return {};
   std::vector<std::string> colours;
   std::size_t next = 0;
   for (const Trace& trace : lines.traces) {
     colours.push_back(colour_class(trace.colour < 0 ? next++ : static_cast<std::size_t>(trace.colour)));
   }
   const double left = 84;
-  Frame frame{x_axis_of(lines), y_axis_of(lines), left, drawing_width - room_for(lines.levels), 0, 0};
+  const Extent x = x_extent_of(lines);
+  const double aside = lines.x_whole ? 0.5 : 0;
+  Frame frame{Axis::exactly(x.least - aside, x.greatest + aside),
+              y_axis_of(lines),
+              left,
+              drawing_width - room_for(lines.levels),
+              0,
+              0};
   std::erase_if(lines.marks, [&](const Mark& mark) { return !std::isfinite(mark.at); });
   const std::vector<LegendEntry> entries = legend_of(lines, colours);
   const std::vector<int> rows = rows_of(lines.marks, frame);
@@ -168,10 +174,15 @@ Drawing draw_lines(const Lines& given, const std::string& title) {
   draw_legend(svg, entries, left, drawing_width - left);
   for (std::size_t i = 0; i < lines.ranges.size(); ++i) {
     const Range& range = lines.ranges[i];
-    const double x = frame.x(range.x_from), y = frame.y(range.y_to);
-    svg.area(x, y, frame.x(range.x_to) - x, frame.y(range.y_from) - y, i % 2 == 0 ? "range c7" : "range c2");
+    const double from = frame.x(range.x_from), top = frame.y(range.y_to);
+    svg.area(from, top, frame.x(range.x_to) - from, frame.y(range.y_from) - top,
+             i % 2 == 0 ? "range c7" : "range c2");
   }
-  frame.draw_x(svg, lines.x_label, lines.x_whole);
+  if (lines.x_whole) {
+    frame.draw_x(svg, lines.x_label, std::lround(x.least), std::lround(x.greatest));
+  } else {
+    frame.draw_x(svg, lines.x_label);
+  }
   frame.draw_y(svg, lines.y_label);
   draw_marks(svg, frame, lines.marks, rows);
   for (std::size_t i = 0; i < lines.traces.size(); ++i) draw_trace(svg, frame, lines.traces[i], colours[i]);

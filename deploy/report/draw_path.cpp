@@ -110,13 +110,14 @@ Drawing draw_path(const Path& path, const std::string& title) {
   if (!path.x_reference_m.empty()) draw_legend(svg, entries, left, panel_width);
   const Frame plan{
       x.axis(panel_width * m_per_pixel), y.axis(panel_height * m_per_pixel), left, left + panel_width, top, bottom};
+  const double speed_max = std::max(speed.greatest, 1e-3);
   const auto draw_panel = [&](const Frame& frame, const char* name, const char* up, const std::vector<double>& height,
                               const std::vector<double>& reference) {
     frame.draw_x(svg, "x, m");
     frame.draw_y(svg, up);
     svg.words(frame.left, top - 10, "start", name, "name");
     draw_reference(svg, frame, path.x_reference_m, reference);
-    draw_coloured(svg, frame, path.x_m, height, path.speed_m_s, speed.size());
+    draw_coloured(svg, frame, path.x_m, height, path.speed_m_s, speed_max);
   };
   draw_panel(plan, "plan", "y, m", path.y_m, path.y_reference_m);
   if (side) {
@@ -127,7 +128,7 @@ Drawing draw_path(const Path& path, const std::string& title) {
     draw_panel(from_side, "from the side", "z, m", path.z_m, path.z_reference_m);
   }
   const double bar = side ? drawing_width - 46 : left + panel_width + 24;
-  draw_colour_bar(svg, bar, top, bottom, std::max(speed.greatest, 1e-3));
+  draw_colour_bar(svg, bar, top, bottom, speed_max);
   return {drawing_width, bottom + 46, std::move(svg).finished()};
 }
 

@@ -2,7 +2,6 @@
 #include "deploy/report/frame.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "deploy/report/text.hpp"
 
@@ -37,9 +36,16 @@ double width_of(const std::string& words) {
 
 std::string colour_class(std::size_t index) { return "c" + std::to_string(index % 8); }
 
-void Frame::draw_x(Svg& svg, const std::string& label, bool whole_only) const {
-  for (const Tick& tick : x_axis.ticks()) {
-    if (whole_only && tick.value != std::round(tick.value)) continue;
+void Frame::draw_x(Svg& svg, const std::string& label) const { draw_x_ticks(svg, label, x_axis.ticks()); }
+
+void Frame::draw_x(Svg& svg, const std::string& label, long first, long last) const {
+  std::vector<Tick> ticks;
+  for (long i = first; i <= last; ++i) ticks.push_back({static_cast<double>(i), std::to_string(i)});
+  draw_x_ticks(svg, label, ticks);
+}
+
+void Frame::draw_x_ticks(Svg& svg, const std::string& label, const std::vector<Tick>& ticks) const {
+  for (const Tick& tick : ticks) {
     svg.line(x(tick.value), top, x(tick.value), bottom, "grid");
     svg.words(x(tick.value), bottom + 18, "middle", tick.label, "tick");
   }

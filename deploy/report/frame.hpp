@@ -27,10 +27,15 @@ struct Frame {
   double y(double value) const { return bottom - y_axis.position(value) * (bottom - top); }
   std::string point(double at_x, double at_y) const { return Svg::point(x(at_x), y(at_y)); }
 
-  void draw_x(Svg& svg, const std::string& label, bool whole_only = false) const;
+  void draw_x(Svg& svg, const std::string& label) const;
+  /// Every whole number from `first` to `last` instead of round ones.
+  void draw_x(Svg& svg, const std::string& label, long first, long last) const;
   void draw_y(Svg& svg, const std::string& label) const;
   /// Dashed lines at their heights, named to the right of the frame, no name over another.
   void draw_levels(Svg& svg, const std::vector<Level>& levels) const;
+
+ private:
+  void draw_x_ticks(Svg& svg, const std::string& label, const std::vector<Tick>& ticks) const;
 };
 
 /// What the names of the levels take to the right of the frame.

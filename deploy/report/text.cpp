@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace eciton::report {
 
@@ -34,6 +35,17 @@ std::string number_text(double value) {
   const int decimals = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : 3;
   std::snprintf(digits, sizeof(digits), "%.*f", size == 0 ? 0 : decimals, size);
   return sign + digits;
+}
+
+std::string figure_text(double value) {
+  if (value == std::round(value) && std::abs(value) < 1e9) {
+    const std::string digits = grouped(std::to_string(std::llabs(std::llround(value))));
+    return value < 0 ? "-" + digits : digits;
+  }
+  if (std::abs(value) >= 1 || !std::isfinite(value)) return number_text(value);
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.3g", value);
+  return digits;
 }
 
 std::string escaped(const std::string& text) {

@@ -37,11 +37,7 @@ std::string head(const ReportInput& input) {
          "; seed " + std::to_string(input.seed) + ", simulated clock</p>\n";
 }
 
-/// "—" where nothing is said.
-std::string cell(const std::string& words, const std::string& css_class = "") {
-  return (css_class.empty() ? "<td>" : "<td class=\"" + css_class + "\">") + (words.empty() ? "–" : escaped(words)) +
-         "</td>";
-}
+std::string cell(const std::string& words) { return "<td>" + (words.empty() ? "–" : escaped(words)) + "</td>"; }
 
 /// Without columns that would be empty.
 std::string figures_table(const ReportInput& input) {

@@ -1,5 +1,7 @@
 // For experiments that the papers do not plot: every series over time, together by unit.
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "deploy/experiments/report/plots.hpp"
 #include "deploy/experiments/report/series.hpp"
@@ -11,56 +13,70 @@ using report::Lines;
 using report::Plot;
 using report::Trace;
 
-constexpr std::size_t together_max = 6;
-
 std::string title_case(std::string words) {
   if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
   return words;
 }
 
-Trace trace_of(const SeriesName& name, const std::vector<double>& time_s, const std::vector<double>& values) {
-  const std::string words = name.quantity + (name.qualifier.empty() ? "" : ", " + name.qualifier);
-  const bool wrench = name.unit == "N" || name.unit == "Nm";
-  return wrench ? filtered(words, time_s, values) : Trace{.name = words, .x = time_s, .y = values};
+/// What may share an axis: "force" of "contact force", "position" of x, y and z.
+std::string family_of(const std::string& quantity) {
+  const std::size_t space = quantity.rfind(' ');
+  if (quantity.size() == 1 || (quantity.size() > 1 && quantity[1] == ' ')) return "position";
+  return space == std::string::npos ? quantity : quantity.substr(space + 1);
+}
+
+/// Together on one plot.
+struct Group {
+  std::vector<SeriesName> names;
+  std::vector<const std::vector<double>*> values;
+};
+
+std::string words_of(const Group& group, const std::string& family) {
+  const bool same = std::all_of(group.names.begin(), group.names.end(), [&](const SeriesName& name) {
+    return name.quantity == group.names.front().quantity;
+  });
+  return same ? group.names.front().quantity : family;
+}
+
+std::vector<Trace> traces_of(const Group& group, const std::vector<double>& time_s) {
+  std::vector<Trace> traces;
+  for (std::size_t i = 0; i < group.names.size(); ++i) {
+    const SeriesName& name = group.names[i];
+    std::string words = name.quantity + (name.qualifier.empty() ? "" : " " + name.qualifier);
+    if (group.names.size() == 1) words = name.qualifier;
+    const bool wrench = name.unit == "N" || name.unit == "Nm";
+    traces.push_back(wrench ? filtered(words, time_s, *group.values[i])
+                            : Trace{.name = words, .x = time_s, .y = *group.values[i]});
+  }
+  return traces;
 }
 
 }  // namespace
 
 std::vector<Plot> series_plots(const Figures& figures) {
   const auto& time_s = series_of(figures, "time_s");
-  std::map<std::string, std::map<std::string, std::vector<Trace>>> by_unit;  // then by quantity
-  std::map<std::string, std::size_t> count;
+  std::map<std::pair<std::string, std::string>, Group> groups;  // by unit and family
   for (const auto& [name, values] : figures.series) {
     if (name == "time_s" || values.size() != time_s.size() || values.empty()) continue;
     const SeriesName parsed = parse_series_name(name);
-    by_unit[parsed.unit][parsed.quantity].push_back(trace_of(parsed, time_s, values));
-    ++count[parsed.unit];
+    Group& group = groups[{parsed.unit, family_of(parsed.quantity)}];
+    group.names.push_back(parsed);
+    group.values.push_back(&values);
   }
   std::vector<Plot> plots;
-  const auto add = [&](const std::string& name, const std::string& words, const std::string& unit,
-                       std::vector<Trace> traces) {
+  for (const auto& [key, group] : groups) {
+    const auto& [unit, family] = key;
+    const std::string words = words_of(group, family);
+    std::string file = words + (unit.empty() ? "" : "_" + unit);
+    std::replace(file.begin(), file.end(), ' ', '_');
     const bool wrench = unit == "N" || unit == "Nm";
-    const std::string label = unit.empty() ? words : words + ", " + unit_text(unit);
     plots.push_back(
-        {name, title_case(words),
+        {file, title_case(words),
          wrench ? "Lines: low-passed at 5 Hz; bands: the standard deviation over the entire interval." : "",
-         Lines{.x_label = "time, s", .y_label = label, .traces = std::move(traces), .marks = marks_of(figures)}});
-  };
-  for (auto& [unit, quantities] : by_unit) {
-    if (count[unit] > together_max || quantities.size() == 1) {
-      for (auto& [quantity, traces] : quantities) add(quantity + "_" + unit, quantity, unit, std::move(traces));
-      continue;
-    }
-    std::vector<Trace> all;
-    std::string words;
-    for (auto& [quantity, traces] : quantities) {
-      words += (words.empty() ? "" : ", ") + quantity;
-      for (Trace& trace : traces) all.push_back(std::move(trace));
-    }
-    add("all_" + unit, words, unit, std::move(all));
-  }
-  for (Plot& plot : plots) {
-    for (char& c : plot.name) c = c == ' ' ? '_' : c;
+         Lines{.x_label = "time, s",
+               .y_label = unit.empty() ? words : words + ", " + unit_text(unit),
+               .traces = traces_of(group, time_s),
+               .marks = marks_of(figures)}});
   }
   return plots;
 }

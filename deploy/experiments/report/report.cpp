@@ -27,7 +27,8 @@ Status make_directory(const fs::path& directory) {
   return cannot_write(directory, failed ? failed.value() : ENOTDIR);
 }
 
-Status write_file(const fs::path& path, const std::string& bytes) {
+/// errno of what failed; 0: written.
+int write_bytes(const fs::path& path, const std::string& bytes) {
   const std::string draft = path.string() + "." + std::to_string(::getpid());
   bool written = false;
   {
@@ -35,10 +36,15 @@ Status write_file(const fs::path& path, const std::string& bytes) {
     file << bytes;
     written = static_cast<bool>(file.flush());
   }
-  if (written && std::rename(draft.c_str(), path.c_str()) == 0) return ok();
+  if (written && std::rename(draft.c_str(), path.c_str()) == 0) return 0;
   const int why = errno;
   std::remove(draft.c_str());
-  return cannot_write(path, why);
+  return why;
+}
+
+Status write_file(const fs::path& path, const std::string& bytes) {
+  const int why = write_bytes(path, bytes);
+  return why == 0 ? ok() : cannot_write(path, why);
 }
 
 }  // namespace
@@ -47,7 +53,7 @@ Status check_report_directory(const std::string& directory) {
   if (directory.empty()) return ok();
   if (Status made = make_directory(directory); !made) return made;
   const fs::path trial = fs::path(directory) / (".eciton." + std::to_string(::getpid()));
-  if (Status status = write_file(trial, ""); !status) return cannot_write(directory, errno);
+  if (const int why = write_bytes(trial, ""); why != 0) return cannot_write(directory, why);
   std::remove(trial.c_str());
   return ok();
 }
