@@ -81,8 +81,6 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   };
   Figures figures;
   if (trial == 0) figures.stills.push_back(pilot.still("T1: both hover"));
-  Figures figures;
-  if (trial == 0) figures.stills.push_back(pilot.still("T1: both hover"));
   PhaseStills phases(pilot, figures.stills);
   const double began_s = simulation.elapsed_s();
   // Asked again while it is refused, as a person would: the clock runs from the accepted goal.
