@@ -3,12 +3,16 @@
 #include <cmath>
 #include <set>
 
-#include "benchmarks/report/axis.hpp"
 #include "benchmarks/report/charts.hpp"
-#include "benchmarks/report/svg.hpp"
+#include "deploy/report/axis.hpp"
+#include "deploy/report/svg.hpp"
 
 namespace eciton::bench {
 namespace {
+
+using report::Axis;
+using report::Svg;
+using report::Tick;
 
 constexpr double width = 900;
 

@@ -6,12 +6,16 @@
 #include <limits>
 #include <span>
 
-#include "benchmarks/report/axis.hpp"
-#include "benchmarks/report/svg.hpp"
 #include "benchmarks/statistics/summary.hpp"
+#include "deploy/report/axis.hpp"
+#include "deploy/report/svg.hpp"
 
 namespace eciton::bench {
 namespace {
+
+using report::Axis;
+using report::Svg;
+using report::Tick;
 
 constexpr double width = 900, left = 70, right = 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -140,33 +144,6 @@ void draw_panel(Svg& svg, const Samples& one, std::size_t index, const Frame& fr
 }
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        // Control characters have no place in a page; what is not UTF-8 is the caller's.
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
 
 std::string distribution_chart(const SampleSet& samples) {
   Svg svg(width, 400, "distribution");

@@ -9,9 +9,6 @@
 
 namespace eciton::bench {
 
-/// For text and attributes.
-std::string escaped(const std::string& text);
-
 using SampleSet = std::vector<const Samples*>;
 
 /// Value over percentile, the percentile on a logarithmic tail: each further nine takes the same room. A line

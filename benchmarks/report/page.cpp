@@ -3,11 +3,14 @@
 #include <vector>
 
 #include "benchmarks/report/charts.hpp"
-#include "benchmarks/report/page_style.hpp"
 #include "benchmarks/report/result.hpp"
+#include "deploy/report/page_style.hpp"
 
 namespace eciton::bench {
 namespace {
+
+using report::page_script;
+using report::page_style;
 
 std::string card(const std::string& title, const std::string& inside) {
   return "<div class=\"card\">" + (title.empty() ? "" : "<h3>" + escaped(title) + "</h3>\n") + inside + "</div>\n";

@@ -12,10 +12,14 @@
 #include "benchmarks/statistics/samples.hpp"
 #include "core/base/result.hpp"
 #include "deploy/command/message_json.hpp"
+#include "deploy/report/text.hpp"
 
 namespace eciton::bench {
 
 using Json = deploy::Json;
+using report::escaped;
+using report::grouped;
+using report::number_text;
 
 /// The first column names the row; cells are text, ready to be read.
 struct Table {
@@ -66,8 +70,6 @@ struct Result {
 /// Count, mean, quantiles, max, jitter, loss and duplicates of each; a quantile that is not resolved is "–".
 Table summary_table(const std::string& title, const std::vector<Samples>& samples);
 
-/// "12.3", three significant digits, thousands in groups; "–" for NaN.
-std::string number_text(double value);
 /// "1.02 [0.99, 1.06]"
 std::string interval_text(const Interval& interval);
 

@@ -16,13 +16,6 @@ std::size_t width(const std::string& text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-std::string grouped(std::string digits) {
-  for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3) {
-    digits.insert(static_cast<std::size_t>(at), 1, ',');
-  }
-  return digits;
-}
-
 }  // namespace
 
 std::string to_text(const Table& table) {
@@ -44,29 +37,6 @@ std::string to_text(const Table& table) {
   add_row(table.columns);
   for (const std::vector<std::string>& row : table.rows) add_row(row);
   return text;
-}
-
-std::string number_text(double value) {
-  if (std::isnan(value)) return "–";
-  if (std::isinf(value)) return value > 0 ? "∞" : "-∞";
-  const double size = std::abs(value);
-  const std::string sign = value < 0 ? "-" : "";
-  char digits[64];
-  if (size >= 1e15) {
-    std::snprintf(digits, sizeof(digits), "%.3g", size);
-    return sign + digits;
-  }
-  if (size >= 999.5) {
-    std::snprintf(digits, sizeof(digits), "%.0f", size);
-    return sign + grouped(digits);
-  }
-  if (size > 0 && size < 0.00095) {
-    std::snprintf(digits, sizeof(digits), "%.2e", size);
-    return sign + digits;
-  }
-  const int decimals = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : 3;
-  std::snprintf(digits, sizeof(digits), "%.*f", size == 0 ? 0 : decimals, size);
-  return sign + digits;
 }
 
 std::string interval_text(const Interval& interval) {

@@ -4,6 +4,7 @@
 
 #include "deploy/experiments/experiment.hpp"
 #include "deploy/experiments/pilot.hpp"
+#include "deploy/experiments/report/plots.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -34,6 +35,29 @@ Start draw_start(std::uint64_t seed) {
   return start;
 }
 
+/// Keeps the moment in which the follower first says that it is aligned, and that it pushes in.
+class PhaseStills {
+ public:
+  PhaseStills(Pilot& pilot, std::vector<Still>& stills) : pilot_(pilot), stills_(stills) {}
+
+  void look() {
+    const KnownModule* known = pilot_.fleet().find(follower);
+    if (known == nullptr || !known->docking) return;
+    if (known->docking->phase == msg::DockingPhase::approach) keep_once("T2: aligned, approaching", approached_);
+    if (known->docking->phase == msg::DockingPhase::assembly) keep_once("T3: pushing in", assembled_);
+  }
+
+ private:
+  void keep_once(const char* title, bool& kept) {
+    if (!kept) stills_.push_back(pilot_.still(title));
+    kept = true;
+  }
+
+  Pilot& pilot_;
+  std::vector<Still>& stills_;
+  bool approached_ = false, assembled_ = false;
+};
+
 Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   const std::uint64_t seed = trial_seed(config.seed, trial);
   const Start start = draw_start(seed);
@@ -55,6 +79,9 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
     return a != nullptr && b != nullptr && a->in_chain() && b->in_chain() &&
            a->view->active_epoch == b->view->active_epoch;
   };
+  Figures figures;
+  if (trial == 0) figures.stills.push_back(pilot.still("T1: both hover"));
+  PhaseStills phases(pilot, figures.stills);
   const double began_s = simulation.elapsed_s();
   // Asked again while it is refused, as a person would: the clock runs from the accepted goal.
   std::uint64_t goal = 0;
@@ -67,14 +94,18 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
     if (!accepted) pilot.wait(1);
   }
   const double accepted_s = accepted ? to_s(pilot.op().report(goal)->accepted_at - TimePoint{}) : began_s;
-  const bool docked = accepted && pilot.wait_until([&] { return linked() && both_active(); }, dock_limit_s);
+  const auto is_docked = [&] {
+    if (trial == 0) phases.look();
+    return linked() && both_active();
+  };
+  const bool docked = accepted && pilot.wait_until(is_docked, dock_limit_s);
   const double time_s = to_s(simulation.now() - TimePoint{}) - accepted_s;
   pilot.wait(held_s);
+  if (trial == 0) figures.stills.push_back(pilot.still(linked() ? "T4: latched, flying as one" : "T4: not latched"));
   const bool success = docked && linked() && both_active();
 
   const KnownModule* said = pilot.fleet().find(follower);
   const msg::DockingState state = said != nullptr && said->docking ? *said->docking : msg::DockingState{};
-  Figures figures;
   figures.metrics = {{"success", success ? 1.0 : 0.0},
                      {"time_s", time_s},
                      {"declared_by_wrench", state.declared_by == msg::DeclaredBy::wrench ? 1.0 : 0.0},
@@ -86,6 +117,7 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
 
 Figures summarise(const std::vector<Figures>& trials) {
   Figures all;
+  all.stills = trials.front().stills;
   double successes = 0, time_s_sum = 0, time_s_max = 0, by_wrench = 0, false_declarations = 0, recoveries = 0;
   double simulated_s = 0;
   for (const Figures& trial : trials) {
@@ -123,6 +155,7 @@ const Experiment docking_experiment{.name = "docking",
                                     .has_trials = true,
                                     .breaks = {"weld-off", "claims-muted"},
                                     .run_trial = &run_trial,
-                                    .summarise = &summarise};
+                                    .summarise = &summarise,
+                                    .plots = &docking_plots};
 
 }  // namespace eciton::deploy

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "deploy/report/plot.hpp"
 #include "deploy/simulation.hpp"
 
 namespace eciton::deploy {
@@ -34,7 +35,7 @@ struct ExperimentConfig {
 struct Still {
   std::string title;
   double time_s = 0;
-  std::vector<double> posture;  // of the world's physics
+  std::vector<double> posture;  // World::posture()
 };
 
 /// Flat names and series of one trial, or of all.
@@ -55,6 +56,8 @@ struct Experiment {
   Figures (*run_trial)(const ExperimentConfig& config, std::uint32_t trial);
   /// From all trials' figures, in their order.
   Figures (*summarise)(const std::vector<Figures>& trials);
+  /// The paper's own plots, from the summary's series; none: every series over time_s, by its unit.
+  std::vector<report::Plot> (*plots)(const Figures& figures) = nullptr;
 };
 
 /// For an experiment that is one trial.

@@ -48,6 +48,7 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
     figures.series["position_error_m"].push_back(error_m);
     ++samples;
   }
+  figures.stills.push_back(pilot.still("hovering"));
   const auto n = static_cast<double>(samples);
   const GoalProgress landing = pilot.follow(pilot.op().land(id), 30);
   figures.metrics = {{"position_error_m_mean", position_m / n},

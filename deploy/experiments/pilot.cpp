@@ -140,4 +140,8 @@ void Pilot::separate() {
   }
 }
 
+Still Pilot::still(const std::string& title) {
+  return {.title = title, .time_s = simulation_.elapsed_s(), .posture = simulation_.world().posture()};
+}
+
 }  // namespace eciton::deploy

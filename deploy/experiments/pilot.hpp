@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "deploy/experiments/experiment.hpp"
 #include "deploy/operator/operator.hpp"
 #include "deploy/simulation.hpp"
 
@@ -42,6 +43,9 @@ class Pilot {
   std::vector<std::uint32_t> members(std::uint32_t id) const;
   /// Of the chain; number (n + 1) / 2, counted from 1.
   std::uint32_t base(std::uint32_t id) const;
+
+  /// The moment as it is, to be drawn after the run. Asking changes nothing.
+  Still still(const std::string& title);
 
   Operator& op() { return operator_; }
   const KnownFleet& fleet() const { return operator_.fleet(); }

@@ -153,25 +153,6 @@ std::string weld_name(std::size_t i, std::size_t a, std::size_t j, std::size_t b
   return name("weld", i, a) + "_" + name("", j, b);
 }
 
-Result<ModelPtr> compile(const std::string& xml) {
-  const std::unique_ptr<mjVFS, decltype(&std::free)> vfs(static_cast<mjVFS*>(std::malloc(sizeof(mjVFS))), &std::free);
-  if (vfs == nullptr) return Error{"no memory for the model of the simulated world"};
-  constexpr const char* file = "world.xml";
-  // By default MuJoCo logs to a file in the working directory; the world reads its warning counters instead.
-  mju_user_warning = [](const char*) {};
-  mj_defaultVFS(vfs.get());
-  if (mj_makeEmptyFileVFS(vfs.get(), file, static_cast<int>(xml.size())) != 0) {
-    mj_deleteVFS(vfs.get());
-    return Error{"MuJoCo's virtual file system refuses the world's model"};
-  }
-  std::memcpy(vfs->filedata[mj_findFileVFS(vfs.get(), file)], xml.data(), xml.size());
-  char message[1000] = "";
-  ModelPtr model(mj_loadXML(file, vfs.get(), message, sizeof message));
-  mj_deleteVFS(vfs.get());
-  if (model == nullptr) return Error{std::string("MuJoCo refuses the model of the simulated world: ") + message};
-  return model;
-}
-
 void index_modules(WorldModel& world, const robot::Airframe& airframe, const std::vector<ModuleStart>& starts) {
   const mjModel* m = world.model.get();
   for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -210,6 +191,25 @@ void index_modules(WorldModel& world, const robot::Airframe& airframe, const std
 
 }  // namespace
 
+Result<ModelPtr> compile_mjcf(const std::string& xml) {
+  const std::unique_ptr<mjVFS, decltype(&std::free)> vfs(static_cast<mjVFS*>(std::malloc(sizeof(mjVFS))), &std::free);
+  if (vfs == nullptr) return Error{"no memory for a model of the simulated world"};
+  constexpr const char* file = "world.xml";
+  // By default MuJoCo logs to a file in the working directory; the world reads its warning counters instead.
+  mju_user_warning = [](const char*) {};
+  mj_defaultVFS(vfs.get());
+  if (mj_makeEmptyFileVFS(vfs.get(), file, static_cast<int>(xml.size())) != 0) {
+    mj_deleteVFS(vfs.get());
+    return Error{"MuJoCo's virtual file system refuses the world's model"};
+  }
+  std::memcpy(vfs->filedata[mj_findFileVFS(vfs.get(), file)], xml.data(), xml.size());
+  char message[1000] = "";
+  ModelPtr model(mj_loadXML(file, vfs.get(), message, sizeof message));
+  mj_deleteVFS(vfs.get());
+  if (model == nullptr) return Error{std::string("MuJoCo refuses the model of the simulated world: ") + message};
+  return model;
+}
+
 std::string mjcf(const WorldConfig& config, const robot::Airframe& airframe, const std::vector<ModuleStart>& starts,
                  const std::vector<Mismatch>& mismatch) {
   const std::size_t n = starts.size();
@@ -243,7 +243,7 @@ std::string mjcf(const WorldConfig& config, const robot::Airframe& airframe, con
 Result<WorldModel> build_model(const WorldConfig& config, const robot::Airframe& airframe,
                                const std::vector<ModuleStart>& starts, const std::vector<Mismatch>& mismatch) {
   WorldModel world;
-  Result<ModelPtr> model = compile(mjcf(config, airframe, starts, mismatch));
+  Result<ModelPtr> model = compile_mjcf(mjcf(config, airframe, starts, mismatch));
   if (!model) return model.error();
   world.model = std::move(model).value();
   world.data.reset(mj_makeData(world.model.get()));

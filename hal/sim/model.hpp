@@ -70,6 +70,9 @@ struct WorldModel {
 std::string mjcf(const WorldConfig& config, const robot::Airframe& airframe, const std::vector<ModuleStart>& starts,
                  const std::vector<Mismatch>& mismatch);
 
+/// The Error says what MuJoCo does not like.
+Result<ModelPtr> compile_mjcf(const std::string& xml);
+
 /// Compiles the model and finds its parts.
 Result<WorldModel> build_model(const WorldConfig& config, const robot::Airframe& airframe,
                                const std::vector<ModuleStart>& starts, const std::vector<Mismatch>& mismatch);

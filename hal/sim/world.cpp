@@ -299,6 +299,22 @@ double World::true_mass_kg(std::uint32_t module) const {
 
 int World::latched_links() const { return impl_->couplings->held(); }
 
+std::vector<double> World::posture() const {
+  std::vector<double> out;
+  const mjData* d = impl_->world.data.get();
+  for (const SimModule& module : impl_->modules) {
+    const double* free_joint = d->qpos + module.index().qpos;
+    out.insert(out.end(), free_joint, free_joint + 7);
+    for (std::size_t k = 0; k < impl_->airframe.joints.size(); ++k) {
+      out.push_back(d->qpos[module.index().joint_qpos[k]]);
+    }
+    for (const RotorActuator& rotor : module.rotors()) {
+      out.insert(out.end(), rotor.gimbal_rad().begin(), rotor.gimbal_rad().end());
+    }
+  }
+  return out;
+}
+
 void World::set_external_wrench(std::uint32_t module, const Wrench& wrench_B_W) {
   impl_->modules[impl_->index(module)].external = wrench_B_W;
 }

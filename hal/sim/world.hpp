@@ -73,6 +73,10 @@ class World : public runtime::Plant {
   /// Links that really hold.
   int latched_links() const;
 
+  /// Where everything is, for a picture: module by module position and attitude (w, x, y, z) of B in W, joint
+  /// angles, then both gimbal angles of each rotor. A Camera reads it.
+  std::vector<double> posture() const;
+
   /// A force and moment on a module besides its rotors, about B's origin, world axes, until replaced.
   void set_external_wrench(std::uint32_t module, const robot::Wrench& wrench_B_W);
   /// Replaces the configuration's constant wind force on every module, N.

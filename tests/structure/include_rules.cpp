@@ -74,6 +74,8 @@ const std::vector<ForeignRule>& foreign_rules() {
       {"fastcdr/", {"core/bus/codec.cpp", "tests/", "benchmarks/"}},
       {"idlc/", {"idl/generator/", "tests/native_peers/generator/"}},
       {"mujoco/", {"hal/sim/"}},
+      {"EGL/", {"hal/sim/"}},
+      {"png.h", {"deploy/report/"}},
       {"Eigen/", {"core/robot/", "services/", "hal/", "deploy/", "tests/", "benchmarks/"}},
       {"spdlog/", {"core/base/"}},
       {"yaml-cpp/", {"core/base/", "tests/"}},

@@ -81,7 +81,10 @@ INSTANTIATE_TEST_SUITE_P(
               {"eciton topic list: ", "nosuch0", "lo"}},
         Wrong{"AFileThatCannotBeWritten",
               {"topic", "list", "--contract", "--json", "/nonexistent/list.json"},
-              {"--json /nonexistent/list.json: cannot be written"}}),
+              {"--json /nonexistent/list.json: cannot be written"}},
+        Wrong{"ADirectoryThatCannotBe",
+              {"experiment", "docking", "--report", "/dev/null/report"},
+              {"--report: /dev/null/report: cannot be written"}}),
     name_of);
 
 TEST(CommandLineTest, HelpGoesToStandardOutputWithStatusZero) {

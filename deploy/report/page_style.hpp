@@ -1,7 +1,7 @@
 // The look of the page, light and dark, and the few lines by which a legend points at its line.
 #pragma once
 
-namespace eciton::bench {
+namespace eciton::report {
 
 constexpr const char* page_style = R"css(
 :root { color-scheme: light dark; --paper: #fcfcfb; --card: #ffffff; --ink: #1d1c1a; --quiet: #66645f; --rule: #e4e3df;
@@ -62,4 +62,4 @@ for (const key of document.querySelectorAll(".legend span")) {
 }
 )js";
 
-}  // namespace eciton::bench
+}  // namespace eciton::report

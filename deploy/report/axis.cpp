@@ -1,13 +1,13 @@
 // Ticks at 1, 2 and 5 times the powers of ten.
-#include "benchmarks/report/axis.hpp"
+#include "deploy/report/axis.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "benchmarks/report/result.hpp"
+#include "deploy/report/text.hpp"
 
-namespace eciton::bench {
+namespace eciton::report {
 namespace {
 
 /// Without the zeros that a measured figure would keep.
@@ -30,6 +30,10 @@ double round_step(double about) {
 
 Axis Axis::around(double least, double greatest) {
   if (!(least > 0 && greatest / least > 20)) return least < 0 ? exactly(least, greatest) : from_zero(greatest);
+  return of_logarithms(least, greatest);
+}
+
+Axis Axis::of_logarithms(double least, double greatest) {
   Axis axis;
   axis.logarithmic_ = true;
   axis.least_ = least / 1.1;
@@ -44,6 +48,13 @@ Axis Axis::exactly(double least, double greatest) {
   axis.least_ = least;
   axis.greatest_ = greatest > least ? greatest : least + 1;
   return axis;
+}
+
+Axis Axis::with_room(double least, double greatest) {
+  least = std::min(least, 0.0);
+  greatest = std::max(greatest, 0.0);
+  const double room = greatest > least ? 0.05 * (greatest - least) : 1;
+  return exactly(least < 0 ? least - room : 0, greatest > 0 || least == 0 ? greatest + room : 0);
 }
 
 double Axis::position(double value) const {
@@ -75,4 +86,4 @@ std::vector<Tick> Axis::ticks() const {
   return out;
 }
 
-}  // namespace eciton::bench
+}  // namespace eciton::report

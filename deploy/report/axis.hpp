@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace eciton::bench {
+namespace eciton::report {
 
 struct Tick {
   double value;
@@ -18,6 +18,9 @@ class Axis {
   static Axis around(double least, double greatest);
   static Axis from_zero(double greatest);
   static Axis exactly(double least, double greatest);
+  /// Holds them with a little room, from zero where they are on one side of it.
+  static Axis with_room(double least, double greatest);
+  static Axis of_logarithms(double least, double greatest);
 
   bool logarithmic() const { return logarithmic_; }
   /// 0 at the lower end, 1 at the upper, and never beyond.
@@ -30,4 +33,4 @@ class Axis {
   bool logarithmic_ = false;
 };
 
-}  // namespace eciton::bench
+}  // namespace eciton::report

@@ -1,11 +1,11 @@
 // Where values stand on an axis, and what is written beside it.
-#include "benchmarks/report/axis.hpp"
+#include "deploy/report/axis.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace eciton::bench {
+namespace eciton::report {
 namespace {
 
 std::vector<double> values(const Axis& axis) {
@@ -49,5 +49,21 @@ TEST(AxisTest, LabelsAreShort) {
   EXPECT_EQ(Axis::exactly(0, 6000).ticks().back().label, "6,000");
 }
 
+TEST(AxisTest, RoomIsLeftOnTheSideThatHasValues) {
+  EXPECT_DOUBLE_EQ(Axis::with_room(2, 10).position(0), 0);  // from zero
+  EXPECT_DOUBLE_EQ(Axis::with_room(2, 10).position(10), 10 / 10.5);
+  EXPECT_DOUBLE_EQ(Axis::with_room(-10, -2).position(0), 1);
+  const Axis both = Axis::with_room(-1, 1);
+  EXPECT_GT(both.position(-1), 0);
+  EXPECT_LT(both.position(1), 1);
+  EXPECT_EQ(values(both), (std::vector<double>{-1, -0.5, 0, 0.5, 1}));
+}
+
+TEST(AxisTest, ALogarithmicAxisMayBeAskedFor) {
+  const Axis axis = Axis::of_logarithms(1, 10);
+  EXPECT_TRUE(axis.logarithmic());
+  EXPECT_EQ(values(axis), (std::vector<double>{1, 2, 5, 10}));
+}
+
 }  // namespace
-}  // namespace eciton::bench
+}  // namespace eciton::report

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-namespace eciton::bench {
+namespace eciton::report {
 
 class Svg {
  public:
@@ -31,6 +31,26 @@ class Svg {
   void path(const std::string& data, const std::string& css_class, const std::string& tip) {
     text_ += "<path d=\"" + data + "\" class=\"" + css_class + "\"><title>" + tip + "</title></path>\n";
   }
+  /// From bottom to top, about its middle.
+  void words_upwards(double x, double y, const std::string& words, const std::string& css_class) {
+    text_ += "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"middle\" transform=\"rotate(-90 " +
+             number(x) + " " + number(y) + ")\" class=\"" + css_class + "\">" + words + "</text>\n";
+  }
+  void shape(const std::string& data, const std::string& css_class) {
+    text_ += "<path d=\"" + data + "\" class=\"" + css_class + "\"/>\n";
+  }
+  /// A line of a colour of its own: "#31688e".
+  void stroke(const std::string& data, const std::string& colour, const std::string& css_class) {
+    text_ += "<path d=\"" + data + "\" stroke=\"" + colour + "\" class=\"" + css_class + "\"/>\n";
+  }
+  void area(double x, double y, double width, double height, const std::string& css_class) {
+    text_ += "<rect x=\"" + number(x) + "\" y=\"" + number(y) + "\" width=\"" + number(width) + "\" height=\"" +
+             number(height) + "\" class=\"" + css_class + "\"/>\n";
+  }
+  void dot(double x, double y, double radius, const std::string& css_class) {
+    text_ += "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"" + number(radius) + "\" class=\"" +
+             css_class + "\"/>\n";
+  }
   std::string finished() && { return std::move(text_) + "</svg>\n"; }
 
   static std::string number(double value) {
@@ -44,4 +64,4 @@ class Svg {
   std::string text_;
 };
 
-}  // namespace eciton::bench
+}  // namespace eciton::report
