@@ -13,6 +13,7 @@ ContactLaw contact_law(const std::string& name) {
   return name == "none" ? ContactLaw::none : name == "paper" ? ContactLaw::paper : ContactLaw::local;
 }
 
+constexpr Duration docking_silence = std::chrono::seconds(1);     // of a chain mate that was docking
 constexpr Duration law_silence = std::chrono::milliseconds(300);  // without an estimate: the feed-forward fades
 
 robot::Pose pose_of(const msg::ModuleState& s) { return {robot::vector(s.p_WM_m), robot::rotation(s.q_WM)}; }
@@ -52,7 +53,7 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
 void ControlService::step(TimePoint now) noexcept {
   if (first_step_ && !loaded_) epoch_ = now;
   take_state(now);
-  take_surroundings();
+  take_surroundings(now);
   take_chain(now);
   take_wrenches(now);
   const bool acts = settled(now);
@@ -121,7 +122,7 @@ void ControlService::take_state(TimePoint now) noexcept {
   motion_.R_WM = robot::rotation(state_.q_WM) * robot::exp_so3(motion_.w_WM_M * ahead_s);
 }
 
-void ControlService::take_surroundings() noexcept {
+void ControlService::take_surroundings(TimePoint now) noexcept {
   while (const auto sample = joint_state_.take()) {
     const msg::JointState& joints = sample->value;
     if (joints.module_id != config_.module_id) {
@@ -136,7 +137,12 @@ void ControlService::take_surroundings() noexcept {
     if (sample->value.module_id == config_.module_id) rotors_armed_ = sample->value.armed;
   }
   while (const auto sample = docking_state_.take()) {
-    if (sample->value.module_id == config_.module_id) docking_ = sample->value;
+    if (sample->value.module_id == config_.module_id) {
+      docking_ = sample->value;
+    } else if (Peer* p = peer(sample->value.module_id)) {
+      p->docking = sample->value;
+      p->docking_at = now - sample->age;
+    }
   }
   while (const auto sample = beacon_.take()) {
     if (sample->value.module_id == config_.module_id) duplicate_id_ = sample->value.duplicate_id;
@@ -157,12 +163,27 @@ bool ControlService::is_member(std::uint32_t module_id) const {
   return std::find(view_.members.begin(), view_.members.end(), module_id) != view_.members.end();
 }
 
+bool ControlService::is_docking(const msg::DockingState& state) {
+  return state.phase != msg::DockingPhase::idle && state.phase != msg::DockingPhase::docked;
+}
+
+const msg::DockingState& ControlService::docking_now() const {
+  if (!in_chain() || is_docking(docking_)) return docking_;
+  for (const Peer& p : peers_) {
+    // While it docks it says so many times a second; a member that fell silent ties nobody down.
+    if (is_docking(p.docking) && last_step_ - p.docking_at < docking_silence && is_member(p.module_id))
+      return p.docking;
+  }
+  return docking_;
+}
+
 void ControlService::take_chain(TimePoint now) noexcept {
   while (const auto sample = chain_view_.take()) {
     const msg::ChainView& view = sample->value;
     if (view.module_id != config_.module_id || !view.active || view.active_epoch == view_.active_epoch) continue;
     const double now_s = seconds(now);
     law_.reset();
+    common_W_ = {};
     if (view.members.size() > 1) {
       enter_chain(view, now);
       pose_control_.set_gains(gains_assembled());
@@ -218,12 +239,15 @@ void ControlService::take_wrenches(TimePoint now) noexcept {
     }
     const double dt_s = std::clamp(to_s(now - law_updated_), 0.0, 0.1);
     law_updated_ = now;
+    common_W_ = {robot::vector(w.common_force_W_N), robot::vector(w.common_moment_W_Nm)};
+    common_W_ = common_W_ * (static_cast<double>(w.fresh) / static_cast<double>(w.members.size()));
     std::array<robot::Wrench, robot::members_max> desired_W;
     law_.update(std::span<const ChainMember>(members).first(w.members.size()), own, desired_contacts(desired_W, now),
                 dt_s);
   }
   if (in_chain() && now - law_updated_ > law_silence) {
     law_.fade(to_s(now - last_step_));
+    common_W_ = {};
   }
 }
 
@@ -276,13 +300,7 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   if (mode_ == FlightMode::failsafe) return;
   const double dt_s = first_step_ ? config_.period_s : std::clamp(to_s(now - last_step_), 1e-4, 0.02);
   const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
-  const robot::Wrench feed_forward_W =
-      in_chain()
-          ? law_.feed_forward_W()
-          : feedback_.update(config_.disturbance_feedback ? external_W_ : robot::Wrench{},
-                             feedback_phase(docking_.phase != msg::DockingPhase::idle, docking_.commanded_gap_m,
-                                            docking_.declared_by != msg::DeclaredBy::nothing),
-                             dt_s);
+  const robot::Wrench feed_forward_W = feed_forward(dt_s);
   const robot::Wrench demanded_B =
       pose_control_.update({.state = motion_,
                             .reference = reference_.at(seconds(now)),
@@ -303,6 +321,19 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   for (const robot::RotorOutput& rotor : allocation_.outputs())
     out.rotors.push_back({rotor.thrust_N, rotor.gimbal_rad});
   rotor_command_.write(out);
+}
+
+robot::Wrench ControlService::feed_forward(double dt_s) noexcept {
+  if (!config_.disturbance_feedback) return in_chain() ? law_.feed_forward_W() : robot::Wrench{};
+  const msg::DockingState& docking = docking_now();
+  const auto phase_of = [&](bool docks) {
+    return feedback_phase(docks, docking.commanded_gap_m, docking.declared_by != msg::DeclaredBy::nothing);
+  };
+  if (!in_chain()) return feedback_.update(external_W_, phase_of(docking.phase != msg::DockingPhase::idle), dt_s);
+  // In a chain only what acts on all alike is a disturbance; the rest is contact, and the law's. What a target
+  // pushes back with acts on all alike too: close to it the feedback freezes, as apart.
+  const FeedbackPhase phase = is_docking(docking) ? phase_of(true) : FeedbackPhase::follow;
+  return law_.feed_forward_W() + feedback_.update(common_W_, phase, dt_s);
 }
 
 void ControlService::write_idle(TimePoint now) noexcept {
