@@ -186,10 +186,8 @@ void ControlService::take_chain(TimePoint now) noexcept {
     common_W_ = {};
     if (view.members.size() > 1) {
       enter_chain(view, now);
-      pose_control_.set_gains(gains_assembled());
-    } else {
-      if (in_chain()) reference_.leave(now_s);
-      pose_control_.set_gains(gains_free());
+    } else if (in_chain()) {
+      reference_.leave(now_s);
     }
     view_ = view;
   }
@@ -301,6 +299,8 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   const double dt_s = first_step_ ? config_.period_s : std::clamp(to_s(now - last_step_), 1e-4, 0.02);
   const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
   const robot::Wrench feed_forward_W = feed_forward(dt_s);
+  // A chain that docks, or is docked to, must hit a port as a module does: as stiff.
+  pose_control_.set_gains(in_chain() && !is_docking(docking_now()) ? gains_assembled() : gains_free());
   const robot::Wrench demanded_B =
       pose_control_.update({.state = motion_,
                             .reference = reference_.at(seconds(now)),

@@ -130,7 +130,8 @@ void DockingService::take_handed_on(TimePoint now) noexcept {
     const msg::DockingState& d = mate->docking;
     const bool hands_on = d.role == msg::DockingRole::none && d.correlation_id != 0;
     // Of a chain's free ports one is male and one is female: whoever owns the one that is named is meant.
-    if (!hands_on || d.correlation_id == taken_over_ || d.port >= airframe_.ports.size() ||
+    // With the target in our chain it is done already.
+    if (!hands_on || d.correlation_id == taken_over_ || is_member(d.peer_id) || d.port >= airframe_.ports.size() ||
         d.peer_port >= airframe_.ports.size() || membership_.linked(config_.module_id, d.port)) {
       continue;
     }

@@ -70,7 +70,8 @@ void DockingService::update_base(TimePoint now, double dt_s) noexcept {
   while (const auto sample = contact_wrench_.take()) {
     const msg::ContactWrench& w = sample->value;
     if (w.module_id != config_.module_id || w.epoch != epoch) continue;
-    chain_force_W_ = static_cast<double>(w.members.size()) * robot::vector(w.common_force_W_N);
+    // Gusts and noise on n members sum up to sqrt(n) times those of one: judged as if they were one's.
+    chain_force_W_ = std::sqrt(static_cast<double>(w.members.size())) * robot::vector(w.common_force_W_N);
     chain_force_at_ = now - sample->age;
   }
   const HeardModule* base = view == nullptr ? nullptr : heard_.find(view->base);
@@ -201,7 +202,7 @@ void DockingService::tell_latch(std::uint32_t port, bool engage, TimePoint now) 
   latch_command_.write(out);
 }
 
-msg::DockingState DockingService::describe() const noexcept {
+msg::DockingState DockingService::state_message() const noexcept {
   msg::DockingState out;
   out.module_id = config_.module_id;
   Pairing pairing = pairing_;
@@ -241,7 +242,7 @@ msg::DockingState DockingService::describe() const noexcept {
 }
 
 void DockingService::write_state(TimePoint now) noexcept {
-  msg::DockingState out = describe();
+  msg::DockingState out = state_message();
   const bool changed = out.phase != state_.phase || out.role != state_.role || out.peer_id != state_.peer_id ||
                        out.declared_by != state_.declared_by || out.recoveries != state_.recoveries ||
                        out.correlation_id != state_.correlation_id;

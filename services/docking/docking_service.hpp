@@ -105,7 +105,7 @@ class DockingService final : public runtime::Service {
   void update_base(TimePoint now, double dt_s) noexcept;
   void write_reference(TimePoint now) noexcept;
   void tell_latch(std::uint32_t port, bool engage, TimePoint now) noexcept;
-  msg::DockingState describe() const noexcept;
+  msg::DockingState state_message() const noexcept;
   void write_state(TimePoint now) noexcept;
 
   DockingServiceConfig config_;
