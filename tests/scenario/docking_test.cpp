@@ -66,7 +66,12 @@ TEST_F(ChainDockingTest, TwoChainsDockPartInTheMiddleAndFlyOn) {
   fly(row_of(4, 12));
   dock(2, 1, 2);
   dock(4, 3, 2);
-  dock(4, 1, 4);
+  const auto docking = pilot_->op().dock(4, 1);
+  ASSERT_TRUE(wait_for_phase(2, msg::DockingPhase::align, 2)) << "the target's port is module 2's";
+  expect_refusal(pilot_->op().go_to(1, {0, 0, 2}, 0, 0), "docking is under way");
+  expect_refusal(pilot_->op().morph(1, std::vector<double>{0, 0, 0.1, 0}, 0), "docking is under way");
+  EXPECT_EQ(pilot_->follow(docking, 60), GoalProgress::succeeded) << pilot_->op().report(docking)->reason;
+  ASSERT_TRUE(pilot_->wait_until([&] { return in_one_chain(*pilot_, 4); }, 2));
   EXPECT_EQ(simulation_->world().latched_links(), 3);
 
   pilot_->wait(2);
@@ -100,7 +105,7 @@ TEST_F(ChainDockingTest, TwoChainsDockPartInTheMiddleAndFlyOn) {
   }
 }
 
-TEST_F(ChainDockingTest, BothSidesBackOffWhenTheTargetFallsSilentMidApproach) {
+TEST_F(ChainDockingTest, BothSidesGiveUpWhenTheTargetFallsSilentMidApproach) {
   fly(row_of(3, 13));
   dock(3, 2, 2);
   const auto goal = pilot_->op().dock(2, 1);
@@ -108,6 +113,12 @@ TEST_F(ChainDockingTest, BothSidesBackOffWhenTheTargetFallsSilentMidApproach) {
   simulation_->suspend(0, "radio");
   EXPECT_EQ(pilot_->follow(goal, 10), GoalProgress::aborted);
   EXPECT_NE(pilot_->op().report(goal)->reason.find("silent"), std::string::npos);
+  auto target_states = simulation_->listener(0).create_reader(topics::docking_state);
+  const auto target_gave_up = [&] {
+    const auto sample = target_states.take();
+    return sample && sample->value.module_id == 1 && sample->value.phase == msg::DockingPhase::idle;
+  };
+  EXPECT_TRUE(pilot_->wait_until(target_gave_up, 2)) << "free to fly again";
   pilot_->wait(2);
   EXPECT_EQ(simulation_->world().latched_links(), 1);
   EXPECT_EQ(members_of(2), 2u);
