@@ -110,15 +110,20 @@ TEST_F(ChainDockingTest, BothSidesGiveUpWhenTheTargetFallsSilentMidApproach) {
   dock(3, 2, 2);
   const auto goal = pilot_->op().dock(2, 1);
   ASSERT_TRUE(wait_for_phase(2, msg::DockingPhase::approach, 30));
-  simulation_->suspend(0, "radio");
-  EXPECT_EQ(pilot_->follow(goal, 10), GoalProgress::aborted);
-  EXPECT_NE(pilot_->op().report(goal)->reason.find("silent"), std::string::npos);
   auto target_states = simulation_->listener(0).create_reader(topics::docking_state);
-  const auto target_gave_up = [&] {
-    const auto sample = target_states.take();
-    return sample && sample->value.module_id == 1 && sample->value.phase == msg::DockingPhase::idle;
-  };
-  EXPECT_TRUE(pilot_->wait_until(target_gave_up, 2)) << "free to fly again";
+  simulation_->suspend(0, "radio");
+  bool target_idle = false;
+  pilot_->wait_until(
+      [&] {
+        while (const auto sample = target_states.take()) {
+          if (sample->value.module_id == 1) target_idle = sample->value.phase == msg::DockingPhase::idle;
+        }
+        return target_idle && is_over(pilot_->op().report(goal)->progress);
+      },
+      10);
+  EXPECT_TRUE(target_idle) << "free to fly again";
+  EXPECT_EQ(pilot_->op().report(goal)->progress, GoalProgress::aborted);
+  EXPECT_NE(pilot_->op().report(goal)->reason.find("silent"), std::string::npos);
   pilot_->wait(2);
   EXPECT_EQ(simulation_->world().latched_links(), 1);
   EXPECT_EQ(members_of(2), 2u);
