@@ -108,6 +108,7 @@ void DockingService::begin_docking(const PortChoice& choice, std::uint64_t goal_
   pairing_ = {choice.target.module, choice.follower.port, choice.target.port};
   membership_.expect(pairing_.port, pairing_.peer, pairing_.peer_port);
   X_WT_.start(choice.target.X_WP);
+  trim_W_.setZero();
   push_bias_N_ = 0;
   BoundedVector<robot::Vector3, ApproachPath::carried_max> mates_F;
   for (const HeardModule& m : heard_.all()) {
@@ -188,6 +189,7 @@ void DockingService::undock(const msg::DockGoal& goal, TimePoint now) noexcept {
     pairing_ = {goal.target_id, port, link->peer_port};
     const robot::Pose X_WT = heard_.port_pose_W(*peer, pairing_.peer_port, now);
     X_WT_.start(X_WT);
+    trim_W_.setZero();
     const robot::Pose X_WF = heard_.port_pose_W(heard_.own(), port, now);
     follower_.start_undocking(airframe_.ports[pairing_.peer_port].kind, X_WT.inverse() * X_WF);
     role_ = msg::DockingRole::follower;

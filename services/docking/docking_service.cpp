@@ -10,6 +10,8 @@ namespace eciton::docking {
 namespace {
 
 constexpr Duration chain_force_age_max = std::chrono::milliseconds(200);
+constexpr double trim_m_max = 0.06;
+constexpr double trim_miss_m_max = 0.1;  // more is a gust, or the way there
 
 }  // namespace
 
@@ -84,6 +86,17 @@ void DockingService::update_base(TimePoint now, double dt_s) noexcept {
   }
 }
 
+void DockingService::trim(const robot::Pose& X_WF, double dt_s) noexcept {
+  // Every member flies by its own lights: what the docking member's say and what the others' say differ by their
+  // sensors' drift, and it ends up between. Standing in front of the port, that is seen and taken off.
+  const DockingOutputs& out = follower_.outputs();
+  const robot::Vector3 miss_W = X_WT_.pose() * out.X_TF_reference.p - X_WF.p;
+  const bool stands = out.phase == DockingPhase::align && out.v_TF_reference.norm() < 0.02;
+  if (chain() == nullptr || !stands || miss_W.norm() > trim_miss_m_max) return;
+  trim_W_ += dt_s / config_.trim_s * miss_W;
+  if (trim_W_.norm() > trim_m_max) trim_W_ *= trim_m_max / trim_W_.norm();
+}
+
 void DockingService::measure_push(const robot::Matrix3& R_WT, double dt_s) noexcept {
   // A member of a chain feels its mates too: what is left on all of them together is the target's push.
   const bool of_chain = chain() != nullptr && last_step_ - chain_force_at_ < chain_force_age_max;
@@ -102,6 +115,7 @@ void DockingService::follow(TimePoint now, double dt_s) noexcept {
   const robot::Pose X_WT = heard_.port_pose_W(peer, pairing_.peer_port, now);
   const robot::Pose X_WF = heard_.port_pose_W(heard_.own(), pairing_.port, now);
   if (fresh) X_WT_.update(dt_s, config_.target_filter_s, X_WT);
+  trim(X_WF, dt_s);
   measure_push(X_WT.R, dt_s);
 
   BoundedVector<robot::Vector3, ApproachPath::bodies_max> others_T;
@@ -137,6 +151,7 @@ void DockingService::write_reference(TimePoint now) noexcept {
   const robot::Matrix3& R_WT = X_WT_.pose().R;
   const MovingPose port{X_WT_.pose() * out.X_TF_reference, R_WT * out.v_TF_reference, R_WT * out.w_TF_reference};
   MovingPose led = carried_along(port, heard_.centre_from_port(heard_.own(), pairing_.port));
+  led.X_WM.p += trim_W_;
   if (chain() != nullptr) led = carried_along(led, X_MB_.pose());
   msg::DockingReference reference;
   reference.module_id = config_.module_id;

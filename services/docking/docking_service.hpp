@@ -25,6 +25,7 @@ struct DockingServiceConfig {
   double state_rate_Hz = 20;     // of docking_state while docking; it is published on every change besides
   double target_filter_s = 0.2;  // the reference follows the target's pose smoothed by this
   double base_filter_s = 0.5;    // a chain's base is where it is seen from its member, smoothed by this
+  double trim_s = 1.5;           // within which a chain's reference is moved by what its port misses
   double push_bias_s = 1.0;      // the push before contact, smoothed by this, counts as none
   bool require_zeroed = true;
   bool claims_muted = false;  // an experiment's control
@@ -38,6 +39,7 @@ struct DockingServiceConfig {
     v("state_rate_Hz", state_rate_Hz, in_range(1, 100));
     v("target_filter_s", target_filter_s, in_range(0, 5));
     v("base_filter_s", base_filter_s, in_range(0, 5));
+    v("trim_s", trim_s, in_range(0.5, 100));
     v("push_bias_s", push_bias_s, in_range(0.05, 10));
     v("require_zeroed", require_zeroed);
     v("claims_muted", claims_muted);
@@ -98,6 +100,7 @@ class DockingService final : public runtime::Service {
   bool is_fresh(const HeardModule& module, TimePoint now) const { return heard_.is_fresh(module, near(), now); }
 
   void follow(TimePoint now, double dt_s) noexcept;
+  void trim(const robot::Pose& X_WF, double dt_s) noexcept;
   void measure_push(const robot::Matrix3& R_WT, double dt_s) noexcept;
   void be_target(TimePoint now, double dt_s) noexcept;
   void accept_follower(TimePoint now) noexcept;
@@ -128,6 +131,7 @@ class DockingService final : public runtime::Service {
   SmoothedPose X_WT_;                                      // the target's port
   SmoothedPose X_MB_;                                      // our chain's base, from our own M
   std::uint64_t base_epoch_ = 0;                           // of the chain it belongs to
+  robot::Vector3 trim_W_ = robot::Vector3::Zero();         // of our chain's reference, by what misses at the standoff
   robot::Vector3 chain_force_W_ = robot::Vector3::Zero();  // on all of our chain
   TimePoint chain_force_at_{};
   double push_bias_N_ = 0;
