@@ -94,8 +94,9 @@ void add_one(CLI::App& parent, Run& run_chosen, const Experiment& experiment) {
   }
   verb.add_option("--jobs", options->jobs, "trials at a time")->check(CLI::Range(1u, 64u))->capture_default_str();
   verb.add_option("--json", options->json, "file for the figures");
-  verb.add_option("--set", options->assignments,
-                  "key=value: gust_N, sensing, world, wakes, law, follower_modules, target_modules, module.…, radio_link.…")
+  verb.add_option(
+          "--set", options->assignments,
+          "key=value: gust_N, sensing, world, wakes, law, follower_modules, target_modules, module.…, radio_link.…")
       ->allow_extra_args(false);
   if (!experiment.breaks.empty()) {
     verb.add_option("--break", options->break_what, "break something: a control that must fail")
