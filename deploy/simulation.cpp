@@ -132,6 +132,8 @@ void Simulation::add_module(std::uint32_t id) {
   config.id = id;
   config.name = "m" + std::to_string(id);
   config.module_ring.domain = module_ring_domain(id);
+  const auto& mute = config_.mute_claims;
+  if (std::find(mute.begin(), mute.end(), id) != mute.end()) config.docking.claims_muted = true;
   set_identity(config);
   auto module = std::make_unique<SimulatedModule>(config, *world_, start_);
   static_cast<WiredWorld&>(*wired_).connect(module->link);

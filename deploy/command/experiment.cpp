@@ -35,6 +35,7 @@ std::string full_key(const std::string& assignment) {
   for (const char* world : {"world", "wakes", "gust_N", "wind_N", "sensing", "noise", "floor"}) {
     if (key == world) return "world." + assignment;
   }
+  if (key == "follower_modules" || key == "target_modules") return "docking." + assignment;
   if (key == "law") return "module.control." + assignment;
   return assignment;
 }
@@ -152,8 +153,9 @@ void add_one(CLI::App& parent, Run& run_chosen, const Experiment& experiment) {
   verb.add_option("--jobs", options->jobs, "trials at a time")->check(CLI::Range(1u, 64u))->capture_default_str();
   verb.add_option("--json", options->json, "file for the figures");
   verb.add_option("--report", options->report, "directory for a page with plots and stills, and each as a file");
-  verb.add_option("--set", options->assignments,
-                  "key=value: gust_N, sensing, world, wakes, law, module.…, radio_link.…")
+  verb.add_option(
+          "--set", options->assignments,
+          "key=value: gust_N, sensing, world, wakes, law, follower_modules, target_modules, module.…, radio_link.…")
       ->allow_extra_args(false);
   if (!experiment.breaks.empty()) {
     verb.add_option("--break", options->break_what, "break something: a control that must fail")

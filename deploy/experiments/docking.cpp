@@ -1,7 +1,10 @@
-// docking: two modules in the air, one docks to the other; from goal to latched and view active.
+// docking: two modules, or two chains, in the air; one docks to the other; from goal to latched and view active.
 #include <algorithm>
+#include <optional>
 #include <random>
+#include <vector>
 
+#include "deploy/experiments/docking_record.hpp"
 #include "deploy/experiments/experiment.hpp"
 #include "deploy/experiments/pilot.hpp"
 #include "deploy/experiments/report/plots.hpp"
@@ -9,12 +12,14 @@
 namespace eciton::deploy {
 namespace {
 
-constexpr std::uint32_t target = 1, follower = 2;
 constexpr double height_m = 1.5;
 constexpr double module_length_m = 0.806;  // docking point to docking point
+constexpr double assembly_gap_m = 0.8;     // between the members of a side, before it is a chain
 constexpr double ask_limit_s = 30;
 constexpr double dock_limit_s = 45;
+constexpr double chain_dock_limit_s = 90;
 constexpr double held_s = 1.0;  // a latch that lets go again was none
+constexpr double assembled_s = 3.0;
 
 /// Gap 1.5 +- 0.3 m, lateral +- 0.4, vertical +- 0.3, uniform: the follower behind the target's male port
 /// would be in front of it, so it stands on the side of the target's female port or of its male one by turns.
@@ -40,11 +45,9 @@ class PhaseStills {
  public:
   PhaseStills(Pilot& pilot, std::vector<Still>& stills) : pilot_(pilot), stills_(stills) {}
 
-  void look() {
-    const KnownModule* known = pilot_.fleet().find(follower);
-    if (known == nullptr || !known->docking) return;
-    if (known->docking->phase == msg::DockingPhase::approach) keep_once("T2: aligned, approaching", approached_);
-    if (known->docking->phase == msg::DockingPhase::assembly) keep_once("T3: pushing in", assembled_);
+  void look(const msg::DockingState& follower) {
+    if (follower.phase == msg::DockingPhase::approach) keep_once("T2: aligned, approaching", approached_);
+    if (follower.phase == msg::DockingPhase::assembly) keep_once("T3: pushing in", assembled_);
   }
 
  private:
@@ -58,6 +61,77 @@ class PhaseStills {
   bool approached_ = false, assembled_ = false;
 };
 
+/// The target's modules first, 1, 2, ...; those nearest to the other side lead each side.
+struct Sides {
+  std::vector<std::uint32_t> target, follower;
+  std::vector<double> heights_m;
+};
+
+Sides place_modules(const DockingSides& docking, const Start& start, hal::sim::WorldConfig& world) {
+  Sides sides;
+  world.modules.clear();
+  const auto add = [&](std::vector<std::uint32_t>& side, double x_m, double y_m, double z_m) {
+    const auto id = static_cast<std::uint32_t>(world.modules.size() + 1);
+    world.modules.push_back({.id = id, .p_WB_m = {start.side * x_m, y_m, 0}});
+    sides.heights_m.push_back(z_m);
+    side.push_back(id);
+  };
+  const double apart_m = module_length_m + assembly_gap_m;
+  for (std::uint32_t k = 0; k < docking.target_modules; ++k) add(sides.target, -apart_m * k, 0, height_m);
+  for (std::uint32_t k = 0; k < docking.follower_modules; ++k) {
+    add(sides.follower, module_length_m + start.gap_m + apart_m * k, start.lateral_m, height_m + start.vertical_m);
+  }
+  return sides;
+}
+
+/// Asks again while it is refused, as a person would. The goal that was accepted, or nothing.
+std::optional<std::uint64_t> ask_to_dock(Pilot& pilot, Simulation& simulation, std::uint32_t follower,
+                                         std::uint32_t target) {
+  const double began_s = simulation.elapsed_s();
+  while (simulation.elapsed_s() < began_s + ask_limit_s) {
+    const std::uint64_t goal = pilot.op().dock(follower, target);
+    pilot.wait_until([&] { return pilot.op().report(goal)->progress >= GoalProgress::accepted; }, 5);
+    const GoalProgress progress = pilot.op().report(goal)->progress;
+    if (progress == GoalProgress::accepted || progress == GoalProgress::succeeded) return goal;
+    pilot.wait(1);
+  }
+  return std::nullopt;
+}
+
+/// All of these, and nobody else, fly by one view.
+bool in_one_chain(const Pilot& pilot, const std::vector<std::uint32_t>& modules) {
+  const KnownModule* first = pilot.fleet().find(modules.front());
+  return std::all_of(modules.begin(), modules.end(), [&](std::uint32_t id) {
+    const KnownModule* m = pilot.fleet().find(id);
+    return m != nullptr && m->in_chain() && m->view->active_epoch == first->view->active_epoch &&
+           m->view->members.size() == modules.size();
+  });
+}
+
+/// One behind the other onto the first.
+bool assemble(Pilot& pilot, Simulation& simulation, const std::vector<std::uint32_t>& side) {
+  for (std::size_t k = 1; k < side.size(); ++k) {
+    const std::vector<std::uint32_t> so_far(side.begin(), side.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+    if (!ask_to_dock(pilot, simulation, side[k], side[k - 1]) ||
+        !pilot.wait_until([&] { return in_one_chain(pilot, so_far); }, dock_limit_s)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The state of whichever follower did it.
+msg::DockingState follower_state(const Pilot& pilot, const Sides& sides, std::uint64_t goal) {
+  for (const std::uint32_t id : sides.follower) {
+    const KnownModule* m = pilot.fleet().find(id);
+    if (m != nullptr && m->docking && m->docking->role == msg::DockingRole::follower &&
+        m->docking->correlation_id == goal) {
+      return *m->docking;
+    }
+  }
+  return {};
+}
+
 Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   const std::uint64_t seed = trial_seed(config.seed, trial);
   const Start start = draw_start(seed);
@@ -65,53 +139,56 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   simulated.world.seed = seed;
   simulated.world.break_what = config.break_what == "weld-off" ? "weld-off" : "";
   simulated.module.docking.claims_muted = config.break_what == "claims-muted";
-  simulated.world.modules = {
-      {.id = target}, {.id = follower, .p_WB_m = {start.side * (module_length_m + start.gap_m), start.lateral_m, 0}}};
+  const Sides sides = place_modules(config.docking, start, simulated.world);
   Simulation simulation(simulated);
   Pilot pilot(simulation);
-  pilot.bring_to_hover({height_m, height_m + start.vertical_m});
+  pilot.bring_to_hover(sides.heights_m);
+  const bool ready = assemble(pilot, simulation, sides.target) && assemble(pilot, simulation, sides.follower);
+  if (sides.heights_m.size() > 2) pilot.wait(assembled_s);
 
-  // Judged by the physics and by both modules' own views, not by what the goal's answer says.
-  const auto linked = [&] { return simulation.world().latched_links() == 1; };
-  const auto both_active = [&] {
-    const KnownModule* a = pilot.fleet().find(target);
-    const KnownModule* b = pilot.fleet().find(follower);
-    return a != nullptr && b != nullptr && a->in_chain() && b->in_chain() &&
-           a->view->active_epoch == b->view->active_epoch;
-  };
+  // Judged by the physics and by all modules' own views, not by what the goal's answer says.
+  std::vector<std::uint32_t> all = sides.target;
+  all.insert(all.end(), sides.follower.begin(), sides.follower.end());
+  const auto linked = [&] { return simulation.world().latched_links() == static_cast<int>(all.size()) - 1; };
+  DockingRecord record(simulation, pilot, sides.follower);
   Figures figures;
-  if (trial == 0) figures.stills.push_back(pilot.still("T1: both hover"));
+  const bool pictured = trial == 0;
+  if (pictured) figures.stills.push_back(pilot.still("T1: both sides hover"));
   PhaseStills phases(pilot, figures.stills);
-  const double began_s = simulation.elapsed_s();
-  // Asked again while it is refused, as a person would: the clock runs from the accepted goal.
-  std::uint64_t goal = 0;
-  const auto answered = [&] { return pilot.op().report(goal)->progress >= GoalProgress::accepted; };
-  bool accepted = false;
-  while (!accepted && simulation.elapsed_s() < began_s + ask_limit_s) {
-    goal = pilot.op().dock(follower, target);
-    pilot.wait_until(answered, 5);
-    accepted = pilot.op().report(goal)->progress == GoalProgress::accepted;
-    if (!accepted) pilot.wait(1);
+  double accepted_s = simulation.elapsed_s();
+  bool docked = false, latched = false;
+  // The members farthest from each other are named: their chains find out who has the ports.
+  const auto goal = ready ? ask_to_dock(pilot, simulation, sides.follower.back(), sides.target.back()) : std::nullopt;
+  if (goal) {
+    accepted_s = simulation.elapsed_s() - to_s(simulation.now() - pilot.op().report(*goal)->accepted_at);
+    const auto is_docked = [&] {
+      record.approach(*goal);
+      if (pictured) phases.look(follower_state(pilot, sides, *goal));
+      if (linked() && !latched) record.latched();
+      latched = linked();
+      return latched && in_one_chain(pilot, all);
+    };
+    docked = pilot.wait_until(is_docked, all.size() > 2 ? chain_dock_limit_s : dock_limit_s);
   }
-  const double accepted_s = accepted ? to_s(pilot.op().report(goal)->accepted_at - TimePoint{}) : began_s;
-  const auto is_docked = [&] {
-    if (trial == 0) phases.look();
-    return linked() && both_active();
+  const double time_s = simulation.elapsed_s() - accepted_s;
+  const auto look = [&] {
+    record.assembled();
+    return false;
   };
-  const bool docked = accepted && pilot.wait_until(is_docked, dock_limit_s);
-  const double time_s = to_s(simulation.now() - TimePoint{}) - accepted_s;
-  pilot.wait(held_s);
-  if (trial == 0) figures.stills.push_back(pilot.still(linked() ? "T4: latched, flying as one" : "T4: not latched"));
-  const bool success = docked && linked() && both_active();
+  pilot.wait_until(look, held_s);
+  const bool success = docked && linked() && in_one_chain(pilot, all);
+  if (success) pilot.wait_until(look, assembled_s - held_s);
 
-  const KnownModule* said = pilot.fleet().find(follower);
-  const msg::DockingState state = said != nullptr && said->docking ? *said->docking : msg::DockingState{};
+  if (pictured) figures.stills.push_back(pilot.still(linked() ? "T4: latched, flying as one" : "T4: not latched"));
+
+  const msg::DockingState state = goal ? follower_state(pilot, sides, *goal) : msg::DockingState{};
   figures.metrics = {{"success", success ? 1.0 : 0.0},
                      {"time_s", time_s},
                      {"declared_by_wrench", state.declared_by == msg::DeclaredBy::wrench ? 1.0 : 0.0},
                      {"false_declarations", static_cast<double>(state.false_declarations)},
                      {"recoveries", static_cast<double>(state.recoveries)},
                      {"simulated_s", simulation.elapsed_s()}};
+  if (success) record.write(trial, figures);
   return figures;
 }
 
@@ -135,6 +212,9 @@ Figures summarise(const std::vector<Figures>& trials) {
     all.series["success"].push_back(m.at("success"));
     all.series["time_s"].push_back(m.at("time_s"));
     all.series["recoveries"].push_back(m.at("recoveries"));
+    for (const auto& [name, samples] : trial.series) {
+      all.series[name].insert(all.series[name].end(), samples.begin(), samples.end());
+    }
   }
   all.metrics = {{"trials", static_cast<double>(trials.size())},
                  {"successes", successes},
@@ -150,7 +230,7 @@ Figures summarise(const std::vector<Figures>& trials) {
 }  // namespace
 
 const Experiment docking_experiment{.name = "docking",
-                                    .summary = "a module docks to another in flight, again and again",
+                                    .summary = "a module or a chain docks to another in flight, again and again",
                                     .modules = 2,
                                     .has_trials = true,
                                     .breaks = {"weld-off", "claims-muted"},

@@ -13,18 +13,32 @@
 
 namespace eciton::deploy {
 
+/// Of the docking experiment: how many modules each side has, already a chain when the clock starts.
+struct DockingSides {
+  std::uint32_t follower_modules = 1;
+  std::uint32_t target_modules = 1;
+
+  template <class V>
+  void visit_fields(V& v) {
+    v("follower_modules", follower_modules, in_range(1, 8));
+    v("target_modules", target_modules, in_range(1, 8));
+  }
+};
+
 struct ExperimentConfig {
   std::uint64_t seed = 1;
   std::uint32_t trials = 1;
   std::uint32_t modules = 0;  // 0: as many as the experiment needs
   std::string break_what;     // a control that must fail
   bool paper_grid = true;  // scaling: the paper's law too, at each setting of a grid
+  DockingSides docking;
   SimulationConfig simulation;
 
   template <class V>
   void visit_fields(V& v) {
     v("modules", modules, in_range(0, 16));
     v("paper_grid", paper_grid);
+    v("docking", docking);
     v("world", simulation.world);
     v("radio_link", simulation.radio_link);
     v("module", simulation.module);

@@ -69,7 +69,7 @@ FlightDecision ControlService::decide_goal(const msg::FlightGoal& goal) const no
 }
 
 FlightDecision ControlService::decide_motion() const noexcept {
-  if (docking_.phase != msg::DockingPhase::idle && docking_.phase != msg::DockingPhase::docked) {
+  if (is_docking(docking_now())) {
     return {mode_, false, "docking is under way: wait until it is done"};
   }
   return decide(mode_, FlightRequest::go_to, conditions_);
@@ -133,6 +133,7 @@ void ControlService::take_morph_goal(const msg::MorphGoal& goal, TimePoint now) 
   if (!in_chain() || goal.epoch != view_.active_epoch || goal.correlation_id == answered_morph_) return;
   answered_morph_ = goal.correlation_id;
   // The joints service of the member it names answers; it comes to the same verdict.
+  if (is_docking(docking_now())) return;
   const std::span<const double> joint_rad(goal.joint_position_rad.data(), goal.joint_position_rad.size());
   see_base(now);
   static_cast<void>(reference_.morph(joint_rad, goal.rate_rad_s, start_s(goal.start_ns, now), seconds(now)));

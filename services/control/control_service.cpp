@@ -13,6 +13,7 @@ ContactLaw contact_law(const std::string& name) {
   return name == "none" ? ContactLaw::none : name == "paper" ? ContactLaw::paper : ContactLaw::local;
 }
 
+constexpr Duration docking_silence = std::chrono::seconds(1);     // of a chain mate that was docking
 constexpr Duration law_silence = std::chrono::milliseconds(300);  // without an estimate: the feed-forward fades
 
 robot::Pose pose_of(const msg::ModuleState& s) { return {robot::vector(s.p_WM_m), robot::rotation(s.q_WM)}; }
@@ -60,7 +61,7 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
 void ControlService::step(TimePoint now) noexcept {
   if (first_step_ && !loaded_) epoch_ = now;
   take_state(now);
-  take_surroundings();
+  take_surroundings(now);
   take_chain(now);
   take_wrenches(now);
   const bool acts = settled(now);
@@ -130,7 +131,7 @@ void ControlService::take_state(TimePoint now) noexcept {
   motion_.R_WM = robot::rotation(state_.q_WM) * robot::exp_so3(motion_.w_WM_M * ahead_s);
 }
 
-void ControlService::take_surroundings() noexcept {
+void ControlService::take_surroundings(TimePoint now) noexcept {
   while (const auto sample = joint_state_.take()) {
     const msg::JointState& joints = sample->value;
     if (joints.module_id != config_.module_id) {
@@ -145,7 +146,12 @@ void ControlService::take_surroundings() noexcept {
     if (sample->value.module_id == config_.module_id) rotors_armed_ = sample->value.armed;
   }
   while (const auto sample = docking_state_.take()) {
-    if (sample->value.module_id == config_.module_id) docking_ = sample->value;
+    if (sample->value.module_id == config_.module_id) {
+      docking_ = sample->value;
+    } else if (Peer* p = peer(sample->value.module_id)) {
+      p->docking = sample->value;
+      p->docking_at = now - sample->age;
+    }
   }
   while (const auto sample = beacon_.take()) {
     if (sample->value.module_id == config_.module_id) duplicate_id_ = sample->value.duplicate_id;
@@ -166,6 +172,20 @@ bool ControlService::is_member(std::uint32_t module_id) const {
   return std::find(view_.members.begin(), view_.members.end(), module_id) != view_.members.end();
 }
 
+bool ControlService::is_docking(const msg::DockingState& state) {
+  return state.phase != msg::DockingPhase::idle && state.phase != msg::DockingPhase::docked;
+}
+
+const msg::DockingState& ControlService::docking_now() const {
+  if (!in_chain() || is_docking(docking_)) return docking_;
+  for (const Peer& p : peers_) {
+    // While it docks it says so many times a second; a member that fell silent ties nobody down.
+    if (is_docking(p.docking) && last_step_ - p.docking_at < docking_silence && is_member(p.module_id))
+      return p.docking;
+  }
+  return docking_;
+}
+
 void ControlService::take_chain(TimePoint now) noexcept {
   while (const auto sample = chain_view_.take()) {
     const msg::ChainView& view = sample->value;
@@ -175,10 +195,8 @@ void ControlService::take_chain(TimePoint now) noexcept {
     common_W_ = {};
     if (view.members.size() > 1) {
       enter_chain(view, now);
-      pose_control_.set_gains(between(gains_assembled(), gains_free(), config_.stiffness));
-    } else {
-      if (in_chain()) reference_.leave(now_s);
-      pose_control_.set_gains(gains_free());
+    } else if (in_chain()) {
+      reference_.leave(now_s);
     }
     view_ = view;
   }
@@ -300,6 +318,9 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   const double dt_s = first_step_ ? config_.period_s : std::clamp(to_s(now - last_step_), 1e-4, 0.02);
   const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
   const robot::Wrench feed_forward_W = feed_forward(dt_s);
+  // A chain that docks, or is docked to, must hit a port as a module does: as stiff.
+  const bool gentle = in_chain() && !is_docking(docking_now());
+  pose_control_.set_gains(gentle ? between(gains_assembled(), gains_free(), config_.stiffness) : gains_free());
   const robot::Wrench demanded_B =
       pose_control_.update({.state = motion_,
                             .reference = reference_.at(seconds(now)),
@@ -324,13 +345,19 @@ void ControlService::write_rotors(TimePoint now) noexcept {
 
 robot::Wrench ControlService::feed_forward(double dt_s) noexcept {
   if (!config_.disturbance_feedback) return in_chain() ? law_.feed_forward_W() : robot::Wrench{};
-  // In a chain only what acts on all alike is a disturbance; the rest is contact, and the law's.
-  if (in_chain()) return law_.feed_forward_W() + feedback_.update(common_W_, FeedbackPhase::follow, dt_s);
-  // Alone the attitude's own integral copes with moments.
-  return feedback_.update({external_W_.force, robot::Vector3::Zero()},
-                          feedback_phase(docking_.phase != msg::DockingPhase::idle, docking_.commanded_gap_m,
-                                         docking_.declared_by != msg::DeclaredBy::nothing),
-                          dt_s);
+  const msg::DockingState& docking = docking_now();
+  const auto phase_of = [&](bool docks) {
+    return feedback_phase(docks, docking.commanded_gap_m, docking.declared_by != msg::DeclaredBy::nothing);
+  };
+  if (!in_chain()) {
+    // Alone the attitude's own integral copes with moments.
+    const robot::Wrench force_W{external_W_.force, robot::Vector3::Zero()};
+    return feedback_.update(force_W, phase_of(docking.phase != msg::DockingPhase::idle), dt_s);
+  }
+  // In a chain only what acts on all alike is a disturbance; the rest is contact, and the law's. What a target
+  // pushes back with acts on all alike too: close to it the feedback freezes, as apart.
+  const FeedbackPhase phase = is_docking(docking) ? phase_of(true) : FeedbackPhase::follow;
+  return law_.feed_forward_W() + feedback_.update(common_W_, phase, dt_s);
 }
 
 void ControlService::write_idle(TimePoint now) noexcept {

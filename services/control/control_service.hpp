@@ -79,7 +79,7 @@ class ControlService final : public runtime::Service {
   /// After a start: whether it is known what the rotors do and what follows from it.
   bool settled(TimePoint now) noexcept;
   void take_state(TimePoint now) noexcept;
-  void take_surroundings() noexcept;
+  void take_surroundings(TimePoint now) noexcept;
   void take_chain(TimePoint now) noexcept;
   void take_requests(TimePoint now) noexcept;
   void take_wrenches(TimePoint now) noexcept;
@@ -108,6 +108,9 @@ class ControlService final : public runtime::Service {
   void write_idle(TimePoint now) noexcept;
   robot::Wrench feed_forward(double dt_s) noexcept;
 
+  /// The docking this module flies in: its own, or its chain's at another member.
+  const msg::DockingState& docking_now() const;
+  static bool is_docking(const msg::DockingState& state);
   bool in_chain() const { return reference_.in_chain(); }
   bool is_member(std::uint32_t module_id) const;
   void answer(msg::GoalKind kind, std::uint64_t correlation_id, msg::GoalPhase phase, std::string_view reason,
@@ -145,13 +148,15 @@ class ControlService final : public runtime::Service {
   msg::ChainView view_;  // the active one
   robot::Allocation allocation_;
 
-  // Of the other members: where they are and how their joints stand, for joining.
   void take_contact_wrench(const msg::ContactWrench& w, TimePoint now) noexcept;
 
+  // Of the other members: where they are and how their joints stand, for joining, and whether they are docking.
   struct Peer {
     std::uint32_t module_id = 0;
     msg::ModuleState state;
     msg::JointState joints;
+    msg::DockingState docking;
+    TimePoint docking_at{};
   };
   std::array<Peer, robot::members_max> peers_{};
   Peer* peer(std::uint32_t module_id) noexcept;

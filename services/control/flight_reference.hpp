@@ -63,7 +63,11 @@ class FlightReference {
   bool in_chain() const { return in_chain_; }
   /// Whether the last motion has come to its end.
   bool arrived(double now_s) const;
-  bool at_rest(double now_s) const { return kind_ == Kind::motion && motion_.finished(now_s); }
+  /// Also where a tracked reference has been left to stand.
+  bool at_rest(double now_s) const {
+    return (kind_ == Kind::motion && motion_.finished(now_s)) ||
+           (kind_ == Kind::track && now_s - tracked_s_ >= config_.track_hold_s);
+  }
 
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {

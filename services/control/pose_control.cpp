@@ -42,6 +42,11 @@ PoseControl::PoseControl(const PoseControlConfig& config)
     : config_(config), gains_(config.gains), gains_from_(config.gains), gains_to_(config.gains) {}
 
 void PoseControl::set_gains(const PoseGains& new_gains) {
+  const PoseGains& to = gains_to_;
+  if (new_gains.kp_1_s2 == to.kp_1_s2 && new_gains.ki_1_s3 == to.ki_1_s3 && new_gains.kd_1_s == to.kd_1_s &&
+      new_gains.ap_1_s2 == to.ap_1_s2 && new_gains.ai_1_s3 == to.ai_1_s3 && new_gains.ad_1_s == to.ad_1_s) {
+    return;
+  }
   gains_from_ = gains_;
   gains_to_ = new_gains;
   blend_s_ = 0;

@@ -64,7 +64,8 @@ class PoseControl {
 
   /// Demanded wrench about the composite centre of mass, body axes, feed-forward included.
   Wrench update(const PoseControlInput& input, double dt_s);
-  /// Changes over to other gains without a step; the integrals keep what they add to the output.
+  /// Changes over to other gains without a step; the integrals keep what they add to the output. The gains that
+  /// are in force, or coming in, may be set again and again.
   void set_gains(const PoseGains& gains);
   void reset();
 

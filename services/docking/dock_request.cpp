@@ -38,6 +38,8 @@ BoundedString<127> DockAnswer::text() const {
       return with_module("module % is docking already: wait or stop it", module);
     case DockRefusal::not_zeroed:
       return with_module("module % has not zeroed its wrench observer: let it hover freely first", module);
+    case DockRefusal::unsettled:
+      return with_module("the chain of module % is being agreed on: ask again in a moment", module);
     case DockRefusal::ring:
       return with_module("module % is in the same chain: the docking would close a ring", module);
     case DockRefusal::ports_taken:
@@ -46,18 +48,32 @@ BoundedString<127> DockAnswer::text() const {
   return {"unknown"};
 }
 
-DockAnswer refuse_dock(const Candidate& follower, const Candidate& target, bool same_chain, bool ports_fit) {
-  if (follower.module == target.module) return {DockRefusal::same_module, target.module};
-  for (const Candidate* one : {&follower, &target}) {
-    if (!one->known) return {DockRefusal::unknown_module, one->module};
-    if (!one->fresh) return {DockRefusal::silent, one->module};
-    if (!one->flying) return {DockRefusal::landed, one->module};
-    if (one->docking) return {DockRefusal::already_docking, one->module};
+DockAnswer refuse_dock(Side follower, Side target, bool same_chain, bool ports_fit) {
+  const std::uint32_t named = target.front().module;
+  if (follower.front().module == named) return {DockRefusal::same_module, named};
+  const auto unfit = [](const Candidate& one) {
+    if (!one.known) return DockRefusal::unknown_module;
+    if (!one.fresh) return DockRefusal::silent;
+    if (!one.flying) return DockRefusal::landed;
+    return one.docking ? DockRefusal::already_docking : DockRefusal::none;
+  };
+  const auto first_unfit = [](Side side, const auto& judge) -> DockAnswer {
+    for (const Candidate& one : side) {
+      if (const DockRefusal refusal = judge(one); refusal != DockRefusal::none) return {refusal, one.module};
+    }
+    return {};
+  };
+  for (const Side side : {follower.first(1), target.first(1)}) {
+    if (const DockAnswer answer = first_unfit(side, unfit); answer.refusal != DockRefusal::none) return answer;
   }
-  if (same_chain) return {DockRefusal::ring, target.module};
-  if (!ports_fit) return {DockRefusal::ports_taken, target.module};
-  for (const Candidate* one : {&follower, &target}) {
-    if (!one->zeroed) return {DockRefusal::not_zeroed, one->module};
+  if (same_chain) return {DockRefusal::ring, named};
+  for (const Side side : {follower, target}) {
+    if (const DockAnswer answer = first_unfit(side, unfit); answer.refusal != DockRefusal::none) return answer;
+  }
+  if (!ports_fit) return {DockRefusal::ports_taken, named};
+  const auto raw = [](const Candidate& one) { return one.zeroed ? DockRefusal::none : DockRefusal::not_zeroed; };
+  for (const Side side : {follower, target}) {
+    if (const DockAnswer answer = first_unfit(side, raw); answer.refusal != DockRefusal::none) return answer;
   }
   return {};
 }

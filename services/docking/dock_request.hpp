@@ -11,7 +11,7 @@
 
 namespace eciton::docking {
 
-/// What the follower knows of one of the two modules.
+/// What the follower knows of a module of either side.
 struct Candidate {
   std::uint32_t module = 0;
   bool known = false;  // a beacon or state of it was ever heard
@@ -29,6 +29,7 @@ enum class DockRefusal : std::uint8_t {
   landed,
   already_docking,
   not_zeroed,
+  unsettled,   // its chain is being agreed on
   ring,        // the two are in one chain
   ports_taken  // no free port of one fits a free port of the other
 };
@@ -40,8 +41,12 @@ struct DockAnswer {
   BoundedString<127> text() const;
 };
 
-/// `same_chain`: both are members of one view. `ports_fit`: choose_ports found a pair. The first reason counts.
-DockAnswer refuse_dock(const Candidate& follower, const Candidate& target, bool same_chain, bool ports_fit);
+/// One side of a docking: the module that was named first, then the rest of its chain.
+using Side = std::span<const Candidate>;
+
+/// `same_chain`: both are members of one view. `ports_fit`: choose_ports found a pair. The first reason counts;
+/// the modules that were named are judged before their chain mates.
+DockAnswer refuse_dock(Side follower, Side target, bool same_chain, bool ports_fit);
 
 /// A port that no one holds, of the module itself or of a member at the end of its chain.
 struct FreePort {

@@ -36,7 +36,8 @@ void DockingSequence::begin(PortKind target_port, const Pose& X_TF) {
   path_.start(X_TF, target_port);
 }
 
-void DockingSequence::start_docking(PortKind target_port, const Pose& X_TF) {
+void DockingSequence::start_docking(PortKind target_port, const Pose& X_TF, std::span<const Vector3> bodies_F) {
+  path_.carry(target_port, bodies_F);
   begin(target_port, X_TF);
   enter(DockingPhase::align);
 }
@@ -57,6 +58,7 @@ void DockingSequence::enter(DockingPhase phase) {
 const DockingOutputs& DockingSequence::update(double dt_s, const DockingInputs& in) {
   out_.measured = relation(in.X_TF, target_port_);
   out_.v_TF_reference.setZero();
+  out_.w_TF_reference.setZero();
   // No time has passed on a first step, or where a clock stands still.
   if (out_.outcome != Outcome::running || !(dt_s > 0) || give_up(in)) return out_;
   in_phase_s_ += dt_s;
@@ -116,6 +118,7 @@ void DockingSequence::align(double dt_s, const DockingInputs& in) {
   path_.update(dt_s, config_.standoff_m, in.bodies_T);
   out_.X_TF_reference = path_.X_TF();
   out_.v_TF_reference = path_.v_TF();
+  out_.w_TF_reference = path_.w_TF();
   out_.gap_m_commanded = relation(path_.X_TF(), target_port_).gap_m;
   const PortRelation& at = out_.measured;
   const bool aligned = path_.arrived() && std::abs(at.gap_m - config_.standoff_m) < config_.align_axial_m &&
@@ -123,7 +126,7 @@ void DockingSequence::align(double dt_s, const DockingInputs& in) {
   aligned_s_ = aligned ? aligned_s_ + dt_s : 0;
   if (aligned_s_ >= config_.align_hold_s) {
     enter(DockingPhase::approach);
-  } else if (in_phase_s_ > config_.align_time_out_s) {
+  } else if (in_phase_s_ > (path_.carries() ? config_.chain_align_time_out_s : config_.align_time_out_s)) {
     fail_by_retreat(Failure::align_time_out);
   }
 }
@@ -176,7 +179,7 @@ void DockingSequence::try_again() {
 }
 
 void DockingSequence::recover(double dt_s) {
-  move_gap(dt_s, config_.standoff_m, config_.recover_speed_m_s);
+  move_gap(dt_s, config_.standoff_m, path_.carries() ? config_.chain_recover_speed_m_s : config_.recover_speed_m_s);
   if (out_.gap_m_commanded < config_.standoff_m) return;
   path_.start(out_.X_TF_reference, target_port_);
   enter(DockingPhase::align);

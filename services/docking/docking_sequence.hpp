@@ -23,12 +23,14 @@ struct DockingConfig {
   double align_attitude_rad = 0.06;
   double align_hold_s = 0.3;
   double align_time_out_s = 30;
+  double chain_align_time_out_s = 90;  // a chain turns slowly
 
   double approach_speed_m_s = 0.3;
   double gap_m_min = -0.10;  // how far the reference goes on beyond contact, to push
   double recover_radial_m = 0.05;
   double push_time_out_s = 2.0;  // at the end of the ramp, neither declared nor latched
   double recover_speed_m_s = 0.6;
+  double chain_recover_speed_m_s = 0.3;
   std::uint32_t recoveries_max = 20;
 
   double declare_axial_m = 0.0125;
@@ -76,6 +78,7 @@ struct DockingOutputs {
   Failure failure = Failure::none;
   Pose X_TF_reference;                       // where the follower's port shall be
   Vector3 v_TF_reference = Vector3::Zero();  // axes of T
+  Vector3 w_TF_reference = Vector3::Zero();
   double gap_m_commanded = 0;
   bool engage_latch = false;  // of the follower's port; the last word stands after the end
   PortRelation measured;
@@ -89,7 +92,8 @@ class DockingSequence {
  public:
   explicit DockingSequence(const DockingConfig& config) : config_(config), path_(config.path) {}
 
-  void start_docking(PortKind target_port, const Pose& X_TF);
+  /// `bodies_F`: centres of the rest of the follower's chain, axes and origin of F; they stay clear of others too.
+  void start_docking(PortKind target_port, const Pose& X_TF, std::span<const Vector3> bodies_F = {});
   void start_undocking(PortKind target_port, const Pose& X_TF);
   const DockingOutputs& update(double dt_s, const DockingInputs& in);
   const DockingOutputs& outputs() const { return out_; }

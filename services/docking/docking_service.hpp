@@ -7,10 +7,11 @@
 
 #include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
-#include "core/robot/kinematics.hpp"
 #include "core/runtime/service.hpp"
+#include "services/docking/chain_reference.hpp"
 #include "services/docking/dock_request.hpp"
 #include "services/docking/docking_sequence.hpp"
+#include "services/docking/heard_modules.hpp"
 #include "services/docking/membership_service.hpp"
 #include "services/docking/target_sequence.hpp"
 
@@ -23,6 +24,8 @@ struct DockingServiceConfig {
   double start_margin_s = 0.1;   // of a chain view, from its decision to its start: a few crossings of the radio
   double state_rate_Hz = 20;     // of docking_state while docking; it is published on every change besides
   double target_filter_s = 0.2;  // the reference follows the target's pose smoothed by this
+  double base_filter_s = 0.5;    // a chain's base is where it is seen from its member, smoothed by this
+  double trim_s = 1.5;           // within which a chain's reference is moved by what its port misses
   double push_bias_s = 1.0;      // the push before contact, smoothed by this, counts as none
   bool require_zeroed = true;
   bool claims_muted = false;  // an experiment's control
@@ -35,6 +38,8 @@ struct DockingServiceConfig {
     v("start_margin_s", start_margin_s, in_range(0.01, 1));
     v("state_rate_Hz", state_rate_Hz, in_range(1, 100));
     v("target_filter_s", target_filter_s, in_range(0, 5));
+    v("base_filter_s", base_filter_s, in_range(0, 5));
+    v("trim_s", trim_s, in_range(0.5, 100));
     v("push_bias_s", push_bias_s, in_range(0.05, 10));
     v("require_zeroed", require_zeroed);
     v("claims_muted", claims_muted);
@@ -59,47 +64,52 @@ class DockingService final : public runtime::Service {
   void step(TimePoint now) noexcept override;
 
  private:
-  /// A module as we hear of it; ourselves too.
-  struct Module {
-    std::uint32_t id = 0;
-    TimePoint heard{};
-    TimePoint state_at{};
-    msg::ModuleState state;
-    msg::DockingState docking;
-    std::array<double, robot::joints_max> joint_rad{};
-    bool flying = false;
-    bool zeroed = false;
-  };
   /// What joins the follower's port to the target's.
   struct Pairing {
     std::uint32_t peer = 0;
     std::uint32_t port = 0;
     std::uint32_t peer_port = 0;
   };
+  /// A docking that was asked of us and that the member at the end of our chain does: see docs/decisions/0010.
+  struct HandedOn {
+    std::uint64_t goal_id = 0;  // 0: none
+    std::uint32_t member = 0;
+    Pairing pairing;  // the member's
+    TimePoint since{};
+    bool begun = false;
+  };
 
-  Module* find(std::uint32_t id) noexcept;
-  Module& own() { return modules_[0]; }
-  bool is_fresh(const Module& module, TimePoint now) const;
-  bool near() const;
-
-  void take(TimePoint now) noexcept;
-  void take_beacons() noexcept;
+  // docking_goals.cpp
   void take_goals(TimePoint now) noexcept;
   void dock(const msg::DockGoal& goal, TimePoint now) noexcept;
   void undock(const msg::DockGoal& goal, TimePoint now) noexcept;
-  void follow(TimePoint now, double dt_s) noexcept;
-  void be_target(TimePoint now, double dt_s) noexcept;
-  void track_target(TimePoint now, double dt_s) noexcept;
-  void update_membership(TimePoint now) noexcept;
-  void write_reference(TimePoint now) noexcept;
-  void tell_latch(std::uint32_t port, bool engage, TimePoint now) noexcept;
-  void write_state(TimePoint now) noexcept;
+  void begin_docking(const PortChoice& choice, std::uint64_t goal_id, TimePoint now) noexcept;
+  void take_handed_on(TimePoint now) noexcept;
+  void watch_handed_on(TimePoint now) noexcept;
+  DockAnswer judge(std::uint32_t target_id, const std::optional<PortChoice>& choice, TimePoint now) const;
+  void add_side(std::uint32_t named, BoundedVector<Candidate, chain::max_modules>& side, TimePoint now) const;
+  Candidate candidate(std::uint32_t id, TimePoint now) const;
+  void add_free_ports(std::uint32_t module_id, TimePoint now,
+                      BoundedVector<FreePort, 2 * robot::members_max>& ports) const;
   void answer(std::uint64_t correlation_id, msg::GoalPhase phase, std::string_view reason, TimePoint now) noexcept;
 
-  robot::Pose port_pose_W(const Module& module, std::uint32_t port, const robot::Pose& X_WB) const;
-  robot::Pose body_pose_W(const Module& module, TimePoint now) const;
-  Candidate candidate(const Module* module, std::uint32_t id, TimePoint now) const;
-  void add_free_ports(std::uint32_t module_id, TimePoint now, BoundedVector<FreePort, 2 * robot::members_max>& ports);
+  const chain::View* chain() const;  // the active view, when it has other members
+  bool is_member(std::uint32_t id) const { return chain() != nullptr && chain()->contains(id); }
+  bool under_way() const { return following_ || (is_target_ && target_.outputs().phase != DockingPhase::docked); }
+  bool near() const { return under_way() || chain() != nullptr; }
+  bool is_fresh(const HeardModule& module, TimePoint now) const { return heard_.is_fresh(module, near(), now); }
+
+  void follow(TimePoint now, double dt_s) noexcept;
+  void trim(const robot::Pose& X_WF, double dt_s) noexcept;
+  void measure_push(const robot::Matrix3& R_WT, double dt_s) noexcept;
+  void be_target(TimePoint now, double dt_s) noexcept;
+  void accept_follower(TimePoint now) noexcept;
+  void update_membership(TimePoint now) noexcept;
+  void update_base(TimePoint now, double dt_s) noexcept;
+  void write_reference(TimePoint now) noexcept;
+  void tell_latch(std::uint32_t port, bool engage, TimePoint now) noexcept;
+  msg::DockingState state_message() const noexcept;
+  void write_state(TimePoint now) noexcept;
 
   DockingServiceConfig config_;
   robot::Airframe airframe_;
@@ -107,17 +117,23 @@ class DockingService final : public runtime::Service {
   Membership membership_;
   DockingSequence follower_;
   TargetSequence target_;
-  std::array<Module, 33> modules_{};  // ourselves first
-  robot::Wrench external_W_;
+  HeardModules heard_;
 
-  Pairing pairing_;  // of the docking we follow or are the target of
+  Pairing pairing_;                                 // of the docking we follow or are the target of, or were last
+  msg::DockingRole role_ = msg::DockingRole::none;  // in it
   bool following_ = false;
-  bool is_target_ = false;
+  bool is_target_ = false;  // docked to, too
   std::uint64_t goal_id_ = 0;
   std::uint64_t answered_ = 0;
+  std::uint64_t taken_over_ = 0;  // the last docking that a chain mate handed on to us
   bool goal_pending_ = false;
-  robot::Pose X_WT_;  // the target's port, smoothed
-  bool X_WT_known_ = false;
+  HandedOn handed_on_;
+  SmoothedPose X_WT_;                                      // the target's port
+  SmoothedPose X_MB_;                                      // our chain's base, from our own M
+  std::uint64_t base_epoch_ = 0;                           // of the chain it belongs to
+  robot::Vector3 trim_W_ = robot::Vector3::Zero();         // of our chain's reference, by what misses at the standoff
+  robot::Vector3 chain_force_W_ = robot::Vector3::Zero();  // on all of our chain
+  TimePoint chain_force_at_{};
   double push_bias_N_ = 0;
   double push_N_ = 0;
   std::array<std::optional<bool>, chain::max_ports> latch_told_{};
@@ -128,12 +144,7 @@ class DockingService final : public runtime::Service {
   bool first_step_ = true;
 
   bus::Reader<msg::DockGoal> dock_goal_;
-  bus::Reader<msg::ModuleState> module_states_;
-  bus::Reader<msg::JointState> joint_states_;
-  bus::Reader<msg::ExternalWrench> external_wrenches_;
-  bus::Reader<msg::DockingState> docking_states_;
-  bus::Reader<msg::Beacon> beacons_;
-  bus::Reader<msg::Heartbeat> heartbeats_;
+  bus::Reader<msg::ContactWrench> contact_wrench_;
   bus::Writer<msg::DockingReference> docking_reference_;
   bus::Writer<msg::LatchCommand> latch_command_;
   bus::Writer<msg::DockingState> docking_state_;

@@ -8,6 +8,8 @@
 namespace eciton::joints {
 namespace {
 
+constexpr Duration docking_silence = std::chrono::seconds(1);  // while it docks a module says so 20 times a second
+
 template <class Members>
 bool contains(const Members& members, std::uint32_t module_id) {
   return std::find(members.begin(), members.end(), module_id) != members.end();
@@ -23,6 +25,7 @@ JointsService::JointsService(bus::Participant& ring, const JointsConfig& config,
       chain_view_(ring.create_reader(topics::chain_view)),
       joint_state_(ring.create_reader(topics::joint_state)),
       module_state_(ring.create_reader(topics::module_state)),
+      docking_state_(ring.create_reader(topics::docking_state)),
       joint_command_(ring.create_writer(topics::joint_command)),
       goal_status_(ring.create_writer(topics::goal_status)) {
   relief_.fill(JointRelief(config.relief));
@@ -36,6 +39,7 @@ void JointsService::step(TimePoint now) noexcept {
   }
   take_joints(now);
   take_chain(now);
+  take_docking(now);
   take_goals(now);
   if (measured_) write(now);
   last_step_ = now;
@@ -128,6 +132,20 @@ void JointsService::enter_chain(TimePoint now) noexcept {
                     (view_.members.size() + 1) / 2 - 1);
 }
 
+void JointsService::take_docking(TimePoint now) noexcept {
+  while (const auto sample = docking_state_.take()) {
+    const msg::DockingState& d = sample->value;
+    if (d.phase != msg::DockingPhase::idle && d.phase != msg::DockingPhase::docked) {
+      if (d.module_id != config_.module_id && !contains(view_.members, d.module_id)) continue;
+      docking_member_ = d.module_id;
+      docking_at_ = now - sample->age;
+    } else if (d.module_id == docking_member_) {
+      docking_member_ = 0;
+    }
+  }
+  if (now - docking_at_ > docking_silence) docking_member_ = 0;
+}
+
 void JointsService::take_goals(TimePoint now) noexcept {
   while (const auto sample = morph_goal_.take()) {
     const msg::MorphGoal& goal = sample->value;
@@ -141,6 +159,10 @@ void JointsService::take_goals(TimePoint now) noexcept {
     if (goal.epoch != view_.active_epoch) {
       answer(goal, msg::GoalPhase::refused, "the chain has changed since this goal was made: look and ask again",
              now);
+      continue;
+    }
+    if (docking_member_ != 0) {
+      answer(goal, msg::GoalPhase::refused, "docking is under way: wait until it is done", now);
       continue;
     }
     // Every member plans the whole chain's motion, so that all take the same time.

@@ -56,6 +56,7 @@ class JointsService final : public runtime::Service {
   void take_chain(TimePoint now) noexcept;
   void enter_chain(TimePoint now) noexcept;
   void straighten(TimePoint now) noexcept;
+  void take_docking(TimePoint now) noexcept;
   void take_goals(TimePoint now) noexcept;
   void write(TimePoint now) noexcept;
   void answer(const msg::MorphGoal& goal, msg::GoalPhase phase, std::string_view reason, TimePoint now) noexcept;
@@ -78,11 +79,14 @@ class JointsService final : public runtime::Service {
   msg::MorphGoal goal_;
   bool goal_pending_ = false;
   std::uint64_t answered_ = 0;
+  std::uint32_t docking_member_ = 0;  // of our chain, or ourselves: the last that said it is docking, ...
+  TimePoint docking_at_{};            // ... and when
 
   bus::Reader<msg::MorphGoal> morph_goal_;
   bus::Reader<msg::ChainView> chain_view_;
   bus::Reader<msg::JointState> joint_state_;
   bus::Reader<msg::ModuleState> module_state_;
+  bus::Reader<msg::DockingState> docking_state_;
   bus::Writer<msg::JointCommand> joint_command_;
   bus::Writer<msg::GoalStatus> goal_status_;
 };

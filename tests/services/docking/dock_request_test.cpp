@@ -12,8 +12,12 @@ Candidate ready(std::uint32_t module) {
   return {.module = module, .known = true, .fresh = true, .flying = true, .docking = false, .zeroed = true};
 }
 
+DockAnswer judge(const Candidate& follower, const Candidate& target, bool same_chain, bool ports_fit) {
+  return refuse_dock({&follower, 1}, {&target, 1}, same_chain, ports_fit);
+}
+
 TEST(RefuseDockTest, AcceptsTwoReadyModules) {
-  EXPECT_EQ(refuse_dock(ready(1), ready(2), false, true).refusal, DockRefusal::none);
+  EXPECT_EQ(judge(ready(1), ready(2), false, true).refusal, DockRefusal::none);
 }
 
 TEST(RefuseDockTest, SaysWhichModuleStandsInTheWayAndWhatWouldBeRight) {
@@ -23,15 +27,37 @@ TEST(RefuseDockTest, SaysWhichModuleStandsInTheWayAndWhatWouldBeRight) {
   silent.fresh = false;
   busy.docking = true;
   raw.zeroed = false;
-  EXPECT_EQ(refuse_dock(ready(1), landed, false, true).text().view(), "module 2 is not flying: take off first");
-  EXPECT_EQ(refuse_dock(landed, ready(1), false, true).module, 2u);
-  EXPECT_EQ(refuse_dock(ready(1), unknown, false, true).refusal, DockRefusal::unknown_module);
-  EXPECT_EQ(refuse_dock(ready(1), silent, false, true).refusal, DockRefusal::silent);
-  EXPECT_EQ(refuse_dock(ready(1), busy, false, true).refusal, DockRefusal::already_docking);
-  EXPECT_EQ(refuse_dock(raw, ready(1), false, true).refusal, DockRefusal::not_zeroed);
-  EXPECT_EQ(refuse_dock(ready(1), ready(1), false, true).refusal, DockRefusal::same_module);
-  EXPECT_EQ(refuse_dock(ready(1), ready(2), true, true).refusal, DockRefusal::ring);
-  EXPECT_EQ(refuse_dock(ready(1), ready(2), false, false).refusal, DockRefusal::ports_taken);
+  EXPECT_EQ(judge(ready(1), landed, false, true).text().view(), "module 2 is not flying: take off first");
+  EXPECT_EQ(judge(landed, ready(1), false, true).module, 2u);
+  EXPECT_EQ(judge(ready(1), unknown, false, true).refusal, DockRefusal::unknown_module);
+  EXPECT_EQ(judge(ready(1), silent, false, true).refusal, DockRefusal::silent);
+  EXPECT_EQ(judge(ready(1), busy, false, true).refusal, DockRefusal::already_docking);
+  EXPECT_EQ(judge(raw, ready(1), false, true).refusal, DockRefusal::not_zeroed);
+  EXPECT_EQ(judge(ready(1), ready(1), false, true).refusal, DockRefusal::same_module);
+  EXPECT_EQ(judge(ready(1), ready(2), true, true).refusal, DockRefusal::ring);
+  EXPECT_EQ(judge(ready(1), ready(2), false, false).refusal, DockRefusal::ports_taken);
+}
+
+TEST(RefuseDockTest, JudgesEveryMemberOfBothChains) {
+  const std::vector follower{ready(1), ready(2)};
+  for (const bool on_target : {true, false}) {
+    std::vector mates{ready(3), ready(4)};
+    const auto judge_mates = [&] {
+      return on_target ? refuse_dock(follower, mates, false, true) : refuse_dock(mates, follower, false, true);
+    };
+    EXPECT_EQ(judge_mates().refusal, DockRefusal::none);
+    mates[1].docking = true;
+    EXPECT_EQ(judge_mates().refusal, DockRefusal::already_docking);
+    EXPECT_EQ(judge_mates().module, 4u);
+    mates[0].flying = false;
+    EXPECT_EQ(judge_mates().module, 3u) << "the one that was named counts first";
+    mates = {ready(3), ready(4)};
+    mates[1].fresh = false;
+    EXPECT_EQ(judge_mates().refusal, DockRefusal::silent);
+    mates[1] = ready(4);
+    mates[1].zeroed = false;
+    EXPECT_EQ(judge_mates().refusal, DockRefusal::not_zeroed);
+  }
 }
 
 TEST(RefuseDockTest, FitsEveryReasonIntoAGoalStatus) {

@@ -283,6 +283,27 @@ TEST_P(DockingSequenceTest, StandsStillWhileNoTimePasses) {
   EXPECT_EQ(out.v_TF_reference, Vector3(Vector3::Zero()));
 }
 
+TEST_P(DockingSequenceTest, SaysHowFastAChainsReferenceMovesAndTurns) {
+  // Sampled at the middle of each step, against the poses on its two sides.
+  const std::array<Vector3, 1> mates{1.2 * outward_T(port)};
+  in.X_TF = {at(2.5, 0.5).p, robot::exp_so3(Vector3(0, 0.1, 0.5))};
+  sequence.start_docking(port, in.X_TF, mates);
+  Pose before = in.X_TF;
+  double turned_rad = 0;
+  for (int k = 0; k < 4000 && sequence.outputs().phase == DockingPhase::align; ++k) {
+    const DockingOutputs& out = step();
+    const Pose& now = out.X_TF_reference;
+    ASSERT_LT((out.v_TF_reference - (now.p - before.p) / dt_s).norm(), 1e-6);
+    const Vector3 turn = robot::log_so3(now.R * before.R.transpose());
+    // But for the last bit of a turn, which is done at once.
+    if (turn.norm() > 1e-3) ASSERT_LT((out.w_TF_reference - turn / dt_s).norm(), 1e-3);
+    turned_rad += turn.norm();
+    before = now;
+  }
+  EXPECT_EQ(sequence.outputs().phase, DockingPhase::approach);
+  EXPECT_NEAR(turned_rad, Vector3(0, 0.1, 0.5).norm(), 1e-3);
+}
+
 TEST_P(DockingSequenceTest, LeavesTheHeapAlone) {
   if (!eciton::testing::AllocationGuard::available()) GTEST_SKIP() << "the sanitizers bring a heap of their own";
   const std::array bodies{Vector3(-3, 0, 0), Vector3(3, 0, 0)};
