@@ -56,6 +56,7 @@ struct Experiment {
 const std::vector<Experiment>& experiments();
 extern const Experiment hover_experiment;
 extern const Experiment docking_experiment;
+extern const Experiment crossing_experiment;
 
 /// Runs the trials in so many processes; the figures do not depend on how many. `progress` is called with the
 /// number of finished trials. Throws BadInput, or std::runtime_error when a trial broke down.

@@ -95,7 +95,7 @@ Figures finish(const Worker& worker) {
 }  // namespace
 
 const std::vector<Experiment>& experiments() {
-  static const std::vector<Experiment> all{hover_experiment, docking_experiment};
+  static const std::vector<Experiment> all{hover_experiment, docking_experiment, crossing_experiment};
   return all;
 }
 

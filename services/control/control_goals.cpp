@@ -96,6 +96,8 @@ void ControlService::begin(const msg::FlightGoal& goal, TimePoint now) noexcept 
   switch (goal.action) {
     case msg::FlightAction::takeoff:
       pose_control_.reset();
+      separation_.reset();
+      neighbourhood_.accept_those_near(motion_.p_WM, separation_.config().distance_m, now);
       reference_.hold({motion_.p_WM, motion_.R_WM});
       reference_.move({{motion_.p_WM.x(), motion_.p_WM.y(), goal.p_WM_m[2]}, robot::upright(motion_.R_WM)},
                       config_.takeoff_m_s, now_s, now_s);

@@ -19,6 +19,7 @@ constexpr double back_off_m_s = 0.4;      // from whoever is too near already
 constexpr double chase_time_s = 0.6;      // catching up with the nominal reference, well damped with ...
 constexpr double chase_rate_1_s = 6.0;    // ... this rate of the velocity
 constexpr double sink_m_s = 0.3;          // no faster down than this, or than the nominal reference
+constexpr double waiting_m = 0.3;         // from the nominal reference
 constexpr double caught_up_m = 1e-3;
 constexpr double caught_up_m_s = 5e-3;
 constexpr double turn_rad_max = 2.0;
@@ -82,10 +83,12 @@ bool Separation::sees(const Neighbour& neighbour, const Vector3& p_WM, Sight& si
   // Of the tracking error only what brings this module nearer to the other than its reference is.
   const Vector3 away = p_W_ - sight.p_W;
   const double nearer_m = (p_W_ - p_WM).head<2>().dot(away.head<2>().normalized());
-  sight.least_m = config_.distance_m + std::clamp(nearer_m, 0.0, config_.tracking_error_m_max);
+  sight.least_m = config_.distance_m - impatience() * config_.pressing_m +
+                  std::clamp(nearer_m, 0.0, config_.tracking_error_m_max);
   const double level_m = away.head<2>().norm(), height_m = std::abs(away.z());
   if (!away.allFinite() || level_m > config_.range_m || height_m > config_.height_m + config_.range_m) return false;
-  if (height_m - config_.height_m > std::max(0.0, level_m - sight.least_m)) {
+  // Kept off in height where that is what is kept already.
+  if (height_m - config_.height_m > std::max(-0.3, level_m - sight.least_m)) {
     sight.away_W = {0, 0, std::copysign(1.0, away.z())};
     sight.distance_m = height_m;
     sight.least_m = config_.height_m;
@@ -126,6 +129,11 @@ void Separation::bound(const Fence& fence, Bounds& bounds) const {
   }
 }
 
+double Separation::impatience() const {
+  constexpr double grows_s = 3;
+  return std::clamp((waiting_s_ - config_.patience_s) / grows_s, 0.0, 1.0);
+}
+
 double Separation::turn_right(const Sight& sight, const Vector3& wanted_v_W) const {
   // Only who meets this way, nearer than both like, is turned for: as far as it takes to leave the other on the left.
   if (sight.away_W.z() != 0) return 0;
@@ -136,7 +144,7 @@ double Separation::turn_right(const Sight& sight, const Vector3& wanted_v_W) con
   const double when_s = speed2 > 1e-6 ? std::clamp(-offset.dot(closing) / speed2, 0.0, config_.look_ahead_s) : 0.0;
   if (when_s <= 0) return 0;
   const double miss_m = (offset + closing * when_s).norm();
-  const double weight = std::clamp((pass_m - miss_m) / config_.rule_margin_m, 0.0, 1.0);
+  const double weight = (1 - impatience()) * std::clamp((pass_m - miss_m) / config_.rule_margin_m, 0.0, 1.0);
   if (weight <= 0 || wanted_v_W.head<2>().norm() < 1e-3) return 0;
   // Bearing of the other from the way this one wants to go, to the left positive.
   const Vector3 to = -sight.away_W;
@@ -178,6 +186,8 @@ PoseReference Separation::update(const SeparationInput& in, double dt_s) {
   const bool nothing_in_the_way = turn_rad <= 0 && bounds.kept_by(nominal.a_WM);
   const bool caught_up = (p_W_ - nominal.p_WM).norm() < caught_up_m && (v_W_ - nominal.v_WM).norm() < caught_up_m_s;
   gives_way_ = !(nothing_in_the_way && caught_up);
+  const bool away = gives_way_ && (p_W_ - nominal.p_WM).norm() > waiting_m;
+  waiting_s_ = away && waiting_s_ < config_.patience_s + config_.impatient_s ? waiting_s_ + dt_s : 0;
   if (!gives_way_) return nominal;
 
   const Vector3 turned_v = turned_right(wanted_velocity(nominal), turn_rad);

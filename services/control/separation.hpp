@@ -32,8 +32,13 @@ struct SeparationConfig {
   double range_m = 3.0;    // further away nobody is looked at
   double speed_m_s = 0.8;  // while it gives way and catches up; faster only if the nominal reference is
   double acceleration_m_s2 = 2.0;
-  double look_ahead_s = 2.0;          // of the rule of the road
-  double rule_margin_m = 0.25;        // which passes at the distance and this
+  double look_ahead_s = 2.0;    // of the rule of the road
+  double rule_margin_m = 0.25;  // which passes at the distance and this
+  // Where the rule leads round and round, as about a goal that others enclose, it is let go by and by, and a
+  // little of the distance with it, so that those at rest make room; and then taken up again.
+  double patience_s = 10;
+  double impatient_s = 10;
+  double pressing_m = 0.1;
   double tracking_error_m_max = 0.3;  // of this module: counts against its distance up to so much
   double silent_s = 0.3;              // a peer's state older than this: the distance grows ...
   double silence_growth_m_s = 0.4;    // ... at this rate ...
@@ -72,7 +77,7 @@ class Separation {
 
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
-    v(self.gives_way_, self.p_W_, self.v_W_);
+    v(self.gives_way_, self.p_W_, self.v_W_, self.waiting_s_);
   }
 
  private:
@@ -95,6 +100,8 @@ class Separation {
   bool sees(const Neighbour& neighbour, const robot::Vector3& p_WM, Sight& sight) const;
   void bound(const Sight& sight, Bounds& bounds) const;
   void bound(const Fence& fence, Bounds& bounds) const;
+  /// 0 to 1.
+  double impatience() const;
   double turn_right(const Sight& sight, const robot::Vector3& wanted_v_W) const;
   robot::Vector3 wanted_velocity(const robot::PoseReference& nominal) const;
 
@@ -102,6 +109,7 @@ class Separation {
   bool gives_way_ = false;
   robot::Vector3 p_W_ = robot::Vector3::Zero();  // of the reference that is flown
   robot::Vector3 v_W_ = robot::Vector3::Zero();
+  double waiting_s_ = 0;  // away from the nominal reference for so long
 };
 
 /// Speed from which one can still stop within `distance_m` (negative: must back off), smooth at zero: braking at
