@@ -29,6 +29,7 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
             .paper_period_s = 1 / config.paper_rate_Hz,
             .paper_gain = config.paper_gain}),
       allocator_(airframe),
+      reach_(airframe),
       neighbourhood_(config.module_id),
       module_state_(ring.create_reader(topics::module_state)),
       joint_state_(ring.create_reader(topics::joint_state)),

@@ -16,6 +16,7 @@
 #include "services/control/disturbance_feedback.hpp"
 #include "services/control/flight_mode.hpp"
 #include "services/control/flight_reference.hpp"
+#include "services/control/goal_checks.hpp"
 #include "services/control/neighbourhood.hpp"
 #include "services/control/pose_control.hpp"
 #include "services/control/separation.hpp"
@@ -78,9 +79,9 @@ class ControlService final : public runtime::Service {
 
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
-    v(self.mode_, self.reference_, self.separation_, self.flown_, self.pose_control_, self.law_, self.feedback_, self.allocator_,
-      self.epoch_, self.last_step_, self.view_, self.goal_id_, self.goal_is_ours_, self.goal_pending_,
-      self.contact_goal_now_, self.answered_mode_, self.answered_flight_, self.answered_morph_,
+    v(self.mode_, self.reference_, self.separation_, self.flown_, self.pose_control_, self.law_, self.feedback_,
+      self.allocator_, self.epoch_, self.last_step_, self.view_, self.goal_id_, self.goal_is_ours_,
+      self.goal_pending_, self.contact_goal_now_, self.answered_mode_, self.answered_flight_, self.answered_morph_,
       self.answered_contact_);
   }
 
@@ -100,7 +101,15 @@ class ControlService final : public runtime::Service {
   void take_docking_reference(const msg::DockingReference& reference, TimePoint at) noexcept;
   bool concerns_us(std::uint32_t module_id) const;
   double start_s(std::int64_t start_ns, TimePoint now) const;
-  FlightDecision decide_goal(const msg::FlightGoal& goal) const noexcept;
+  FlightDecision decide_goal(const msg::FlightGoal& goal, TimePoint now) noexcept;
+  GoalLimits goal_limits() const;
+  FlightDecision refuse(const GoalFault& fault) noexcept;
+  /// Of goto and path: the fields, ...
+  std::optional<GoalFault> check_fields(const msg::FlightGoal& goal, TimePoint now) const noexcept;
+  std::optional<GoalFault> check_fields(const msg::PathGoal& goal, TimePoint now) const noexcept;
+  /// ... and the way they lead, of every member.
+  template <class Way>
+  std::optional<GoalFault> check_way(const Way& way) noexcept;
   FlightDecision decide_motion() const noexcept;
   void answer_flight(std::uint32_t module_id, std::uint64_t correlation_id, const FlightDecision& decision,
                      TimePoint now) noexcept;
@@ -131,6 +140,8 @@ class ControlService final : public runtime::Service {
   DisturbanceFeedback feedback_;
   robot::Allocator allocator_;
   TouchdownDetector touchdown_;
+  robot::HoverReach reach_;
+  GoalFault refusal_;  // the last one's words
   FlightMode mode_ = FlightMode::disarmed;
   FlightConditions conditions_;
   TimePoint law_updated_{};

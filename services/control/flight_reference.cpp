@@ -18,14 +18,14 @@ void FlightReference::hold(const Pose& X_WM) {
   motion_ = PoseMotion(X_WM);
 }
 
-void FlightReference::move(const Pose& X_WM, double speed_m_s, double start_s, double now_s) {
+robot::PoseMotion FlightReference::way_to(const Pose& X_WM, double speed_m_s, double start_s, double now_s) const {
   robot::TrajectoryLimits limits = config_.limits;
   limits.speed_m_s = speed_m_s > 0 ? speed_m_s : config_.speed_m_s;
-  motion_ = PoseMotion(leading(now_s), X_WM, start_s, robot::SpeedProfile::trapezoid, limits);
-  kind_ = Kind::motion;
+  return {leading(now_s), X_WM, start_s, robot::SpeedProfile::trapezoid, limits};
 }
 
-void FlightReference::follow(std::span<const Pose> waypoints, double speed_m_s, double start_s, double now_s) {
+robot::PoseSpline FlightReference::way_through(std::span<const Pose> waypoints, double speed_m_s, double start_s,
+                                               double now_s) const {
   robot::TrajectoryLimits limits = config_.limits;
   limits.speed_m_s = speed_m_s > 0 ? speed_m_s : config_.speed_m_s;
   limits.rate_rad_s = config_.path_rate_rad_s;
@@ -34,7 +34,16 @@ void FlightReference::follow(std::span<const Pose> waypoints, double speed_m_s, 
   const PoseReference from = leading(now_s);
   through[0] = {from.p_WM, from.R_WM};
   std::copy_n(waypoints.begin(), count - 1, through.begin() + 1);
-  path_ = robot::PoseSpline(std::span(through).first(count), start_s, robot::SpeedProfile::trapezoid, limits);
+  return {std::span<const Pose>(through).first(count), start_s, robot::SpeedProfile::trapezoid, limits};
+}
+
+void FlightReference::move(const Pose& X_WM, double speed_m_s, double start_s, double now_s) {
+  motion_ = way_to(X_WM, speed_m_s, start_s, now_s);
+  kind_ = Kind::motion;
+}
+
+void FlightReference::follow(std::span<const Pose> waypoints, double speed_m_s, double start_s, double now_s) {
+  path_ = way_through(waypoints, speed_m_s, start_s, now_s);
   kind_ = Kind::path;
 }
 
@@ -78,11 +87,21 @@ void FlightReference::leave(double now_s) {
   hold({own.p_WM, own.R_WM});
 }
 
-void FlightReference::members_at(double now_s, std::span<PoseReference> members) const {
+std::size_t FlightReference::members_on(const PoseReference& way, double t_s,
+                                        std::span<PoseReference> members) const {
+  if (!in_chain_) {
+    members[0] = way;
+    return 1;
+  }
   std::array<robot::ScalarMotion, robot::coordinates_max> joints;
   const std::span part = std::span(joints).first(place_.members * airframe_.joints.size());
-  joints_.at(now_s, part);
-  robot::chain_references(airframe_, place_.base, leading(now_s), part, members.first(place_.members));
+  joints_.at(t_s, part);
+  robot::chain_references(airframe_, place_.base, way, part, members.first(place_.members));
+  return place_.members;
+}
+
+void FlightReference::members_at(double now_s, std::span<PoseReference> members) const {
+  members_on(leading(now_s), now_s, members);
 }
 
 PoseReference FlightReference::own_part(double now_s) const {

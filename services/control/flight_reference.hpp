@@ -38,6 +38,12 @@ class FlightReference {
   void move(const robot::Pose& X_WM, double speed_m_s, double start_s, double now_s);
   /// From the present reference, which is at rest, through poses to rest at the last one.
   void follow(std::span<const robot::Pose> waypoints, double speed_m_s, double start_s, double now_s);
+  /// The ways that these two would fly, to be looked at beforehand.
+  robot::PoseMotion way_to(const robot::Pose& X_WM, double speed_m_s, double start_s, double now_s) const;
+  robot::PoseSpline way_through(std::span<const robot::Pose> waypoints, double speed_m_s, double start_s,
+                                double now_s) const;
+  /// What a way of the base means for all members, or for the module alone, at one time of it; how many.
+  std::size_t members_on(const robot::PoseReference& way, double t_s, std::span<robot::PoseReference> members) const;
   /// A reference that moves by itself, given again and again.
   void track(const robot::PoseReference& reference, double stamp_s);
   /// Straight down from the present reference, for ever.
