@@ -158,6 +158,8 @@ void ControlService::take_chain(TimePoint now) noexcept {
     if (view.module_id != config_.module_id || !view.active || view.active_epoch == view_.active_epoch) continue;
     const double now_s = seconds(now);
     law_.reset();
+    feedback_.reset();
+    hand_over_.begin();
     if (separation_.gives_way()) reference_.hold({flown_.p_WM, flown_.R_WM});
     separation_.reset();
     if (view.members.size() > 1) {
@@ -289,13 +291,14 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   if (mode_ == FlightMode::failsafe) return;
   const double dt_s = first_step_ ? config_.period_s : std::clamp(to_s(now - last_step_), 1e-4, 0.02);
   const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
-  const robot::Wrench feed_forward_W =
+  const robot::Wrench given_W =
       in_chain()
           ? law_.feed_forward_W()
           : feedback_.update(config_.disturbance_feedback ? external_W_ : robot::Wrench{},
                              feedback_phase(docking_.phase != msg::DockingPhase::idle, docking_.commanded_gap_m,
                                             docking_.declared_by != msg::DeclaredBy::nothing),
                              dt_s);
+  const robot::Wrench feed_forward_W = hand_over_.update(given_W, dt_s);
   flown_ = separated(now, dt_s);
   const robot::Wrench demanded_B =
       pose_control_.update({.state = motion_,
@@ -331,6 +334,7 @@ void ControlService::write_idle(TimePoint now) noexcept {
   }
   rotor_command_.write(out);
   pose_control_.reset();
+  hand_over_.reset();
 }
 
 void ControlService::report_mode(TimePoint now) noexcept {

@@ -17,6 +17,7 @@
 #include "services/control/flight_mode.hpp"
 #include "services/control/flight_reference.hpp"
 #include "services/control/goal_checks.hpp"
+#include "services/control/hand_over.hpp"
 #include "services/control/neighbourhood.hpp"
 #include "services/control/pose_control.hpp"
 #include "services/control/separation.hpp"
@@ -138,6 +139,7 @@ class ControlService final : public runtime::Service {
   PoseControl pose_control_;
   ContactWrenchLaw law_;
   DisturbanceFeedback feedback_;
+  HandOver hand_over_;  // from the one's feed-forward to the other's
   robot::Allocator allocator_;
   TouchdownDetector touchdown_;
   robot::HoverReach reach_;

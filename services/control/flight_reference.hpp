@@ -57,7 +57,7 @@ class FlightReference {
                                          double now_s) {
     return joints_.go(joint_rad, rate_rad_s, now_s, start_s);
   }
-  /// Out of the chain, standing where the reference is now.
+  /// Out of the chain, coming to rest from where the reference is now.
   void leave(double now_s);
 
   robot::PoseReference at(double now_s) const;
@@ -71,7 +71,7 @@ class FlightReference {
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
     v(self.kind_, self.motion_, self.path_, self.tracked_, self.tracked_s_, self.in_chain_, self.place_,
-      self.offset_p_, self.offset_R_, self.joints_);
+      self.offset_p_, self.offset_R_, self.slowing_v_, self.joined_s_, self.joints_);
   }
 
  private:
@@ -92,7 +92,9 @@ class FlightReference {
   ChainPlace place_;
   robot::Vector3 offset_p_ = robot::Vector3::Zero();      // from what the shared base says to where this
   robot::Matrix3 offset_R_ = robot::Matrix3::Identity();  // module sees itself, fixed when it joined
-  robot::JointTrajectory joints_;                         // of all members
+  robot::Vector3 slowing_v_ = robot::Vector3::Zero();     // its speed when it joined, which runs out
+  double joined_s_ = 0;
+  robot::JointTrajectory joints_;  // of all members
 };
 
 }  // namespace eciton::control

@@ -42,7 +42,7 @@ double lowest(const GoalLimits& limits) { return std::max(limits.height_m_min, l
 
 std::optional<GoalFault> check_pose(const std::array<double, 3>& p_WM_m, const std::array<double, 4>& q_WM,
                                     std::size_t waypoint, const GoalLimits& limits) {
-  std::array<char, 24> where{};
+  std::array<char, 40> where{};
   if (waypoint > 0) std::snprintf(where.data(), where.size(), "waypoint %zu: ", waypoint);
   double squares = 0;
   for (const double q : q_WM) squares += q * q;
@@ -87,7 +87,7 @@ std::optional<GoalFault> check_moment(std::span<const robot::PoseReference> memb
                                       const GoalLimits& limits, const Vector3& com_offset_B,
                                       robot::HoverReach& reach) {
   for (std::size_t i = 0; i < members.size(); ++i) {
-    std::array<char, 24> who{};
+    std::array<char, 40> who{};
     if (members.size() > 1) std::snprintf(who.data(), who.size(), "member %zu: ", i + 1);
     const Vector3& p_W = members[i].p_WM;
     if (const auto axis = outside(p_W, height_m_low, limits.fence)) {
