@@ -83,7 +83,7 @@ bool Separation::sees(const Neighbour& neighbour, const Vector3& p_WM, Sight& si
   // Of the tracking error only what brings this module nearer to the other than its reference is.
   const Vector3 away = p_W_ - sight.p_W;
   const double nearer_m = (p_W_ - p_WM).head<2>().dot(away.head<2>().normalized());
-  sight.least_m = config_.distance_m - impatience() * config_.pressing_m +
+  sight.least_m = config_.distance_m - (sight.gives_way ? impatience() * config_.pressing_m : 0) +
                   std::clamp(nearer_m, 0.0, config_.tracking_error_m_max);
   const double level_m = away.head<2>().norm(), height_m = std::abs(away.z());
   if (!away.allFinite() || level_m > config_.range_m || height_m > config_.height_m + config_.range_m) return false;
