@@ -245,12 +245,12 @@ void ControlService::take_docking_reference(const msg::DockingReference& referen
       reference.epoch != 0 && in_chain() && reference.epoch == view_.active_epoch && is_member(reference.module_id);
   if (!alone && !of_chain) return;
   if (!decide(mode_, FlightRequest::go_to, conditions_).accepted) return;
+  if (check_pose(reference.p_WM_m, reference.q_WM, 0, {.fence = everywhere(), .height_m_min = -1e9}) ||
+      !robot::vector(reference.v_WM_m_s).allFinite() || !robot::vector(reference.w_WM_M_rad_s).allFinite()) {
+    return;  // not a reference: the last one is held
+  }
   mode_ = FlightMode::hover;
   goal_pending_ = false;
-  if (check_pose(reference.p_WM_m, reference.q_WM, 0, {.fence = everywhere()}) ||
-      !robot::vector(reference.v_WM_m_s).allFinite() || !robot::vector(reference.w_WM_M_rad_s).allFinite()) {
-    return;
-  }
   robot::PoseReference moving;
   moving.p_WM = robot::vector(reference.p_WM_m);
   moving.R_WM = robot::rotation(reference.q_WM);
