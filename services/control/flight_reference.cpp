@@ -13,6 +13,7 @@ using robot::PoseReference;
 
 namespace {
 
+constexpr double slip_time_s = 0.3;
 constexpr double slowing_time_s = 0.05;  // a module that docks at 0.2 m/s goes on by 2 cm
 
 }  // namespace
@@ -55,6 +56,13 @@ void FlightReference::follow(std::span<const Pose> waypoints, double speed_m_s, 
 }
 
 void FlightReference::track(const PoseReference& reference, double stamp_s) {
+  if (kind_ != Kind::track) {
+    const PoseReference from = leading(stamp_s);
+    slip_p_ = from.p_WM - reference.p_WM;
+    slip_v_ = from.v_WM - reference.v_WM;
+    slip_phi_ = robot::log_so3(reference.R_WM.transpose() * from.R_WM);
+    slip_s_ = stamp_s;
+  }
   kind_ = Kind::track;
   tracked_ = reference;
   tracked_s_ = stamp_s;
@@ -151,6 +159,11 @@ PoseReference FlightReference::leading(double now_s) const {
         r.v_WM.setZero();
         r.w_WM_M.setZero();
       }
+      const double s = std::max(0.0, now_s - slip_s_) / slip_time_s, left = std::exp(-s);
+      const robot::Vector3 rate = slip_v_ + slip_p_ / slip_time_s;
+      r.p_WM += (slip_p_ + rate * (s * slip_time_s)) * left;
+      r.v_WM += (slip_v_ - rate * s) * left;
+      r.R_WM = r.R_WM * robot::exp_so3(slip_phi_ * left);
       return r;
     }
   }

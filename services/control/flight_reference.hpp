@@ -70,8 +70,9 @@ class FlightReference {
 
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
-    v(self.kind_, self.motion_, self.path_, self.tracked_, self.tracked_s_, self.in_chain_, self.place_,
-      self.offset_p_, self.offset_R_, self.slowing_v_, self.joined_s_, self.joints_);
+    v(self.kind_, self.motion_, self.path_, self.tracked_, self.tracked_s_, self.slip_p_, self.slip_v_,
+      self.slip_phi_, self.slip_s_, self.in_chain_, self.place_, self.offset_p_, self.offset_R_, self.slowing_v_,
+      self.joined_s_, self.joints_);
   }
 
  private:
@@ -87,6 +88,11 @@ class FlightReference {
   robot::PoseSpline path_;
   robot::PoseReference tracked_;
   double tracked_s_ = 0;
+  // From the tracked reference to the one before it, when tracking began: it fades, so that beginning moves nothing.
+  robot::Vector3 slip_p_ = robot::Vector3::Zero();
+  robot::Vector3 slip_v_ = robot::Vector3::Zero();
+  robot::Vector3 slip_phi_ = robot::Vector3::Zero();
+  double slip_s_ = 0;
 
   bool in_chain_ = false;
   ChainPlace place_;
