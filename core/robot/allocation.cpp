@@ -108,9 +108,49 @@ Vector6 Allocator::solve(const Matrix6& QQt, const Vector6& wrench) const {
   return eigen.eigenvectors() * in_axes;
 }
 
+RotorOutput Allocator::limited(std::size_t k, const Vector3& thrust_B_N, Allocation& out) const {
+  const RotorGeometry& rotor = airframe_.rotors[k];
+  RotorOutput o = rotor.gimbal_rad_max <= 0 ? RotorOutput{thrust_B_N.z(), {0, 0}}
+                                            : rotor_output(thrust_B_N, gimbal_rad_[k], rotor.gimbal_rad_max);
+  const double limited_N = std::clamp(o.thrust_N, rotor.thrust_N_min, rotor.thrust_N_max);
+  out.thrust_limited = out.thrust_limited || std::abs(limited_N - o.thrust_N) > 1e-6;
+  o.thrust_N = limited_N;
+  for (double& angle : o.gimbal_rad) {
+    const double limited_rad = std::clamp(angle, -rotor.gimbal_rad_max, rotor.gimbal_rad_max);
+    out.gimbal_limited = out.gimbal_limited || limited_rad != angle;
+    angle = limited_rad;
+  }
+  return o;
+}
+
+void Allocator::keep_moment(const Blocks& Q, const Vector3& moment_B, Allocation& out) const {
+  // Projections by turns: on the thrusts that make the moment, and on those that the rotors can give.
+  constexpr int turns = 12;
+  constexpr double close_Nm = 1e-6;
+  const std::size_t n = out.rotor_count;
+  Matrix3 MMt = Matrix3::Zero();
+  for (std::size_t k = 0; k < n; ++k) MMt.noalias() += Q[k].bottomRows<3>() * Q[k].bottomRows<3>().transpose();
+  const Eigen::LDLT<Matrix3> factors(MMt);
+  std::array<RotorOutput, rotors_max> rotors = out.rotors;
+  double best_Nm = 1e9;
+  for (int turn = 0; turn <= turns; ++turn) {
+    Vector3 missing = moment_B;
+    for (std::size_t k = 0; k < n; ++k) missing -= Q[k].bottomRows<3>() * thrust_vector_B(rotors[k]);
+    if (missing.norm() < best_Nm) {
+      best_Nm = missing.norm();
+      out.rotors = rotors;
+    }
+    if (best_Nm < close_Nm || turn == turns) return;
+    const Vector3 y = factors.solve(missing);
+    for (std::size_t k = 0; k < n; ++k) {
+      rotors[k] = limited(k, thrust_vector_B(rotors[k]) + Q[k].bottomRows<3>().transpose() * y, out);
+    }
+  }
+}
+
 Allocation Allocator::update(const Wrench& demanded_B, const Vector3& com_offset_B) {
   const std::size_t n = airframe_.rotors.size();
-  std::array<Block, rotors_max> Q;
+  Blocks Q;
   Matrix6 QQt = Matrix6::Zero();
   for (std::size_t k = 0; k < n; ++k) {
     const RotorGeometry& rotor = airframe_.rotors[k];
@@ -131,23 +171,15 @@ Allocation Allocator::update(const Wrench& demanded_B, const Vector3& com_offset
 
   Allocation out;
   out.rotor_count = n;
-  choose_scales(airframe_, config_.force_scale_min, for_force, for_moment, out);
+  // What may be dropped of the force: of more than the weight, all that is more.
+  const double weight_N = 1.1 * airframe_.mass_kg * gravity_m_s2, force_N = demanded_B.force.norm();
+  const double force_scale_min = config_.force_scale_min * (force_N > weight_N ? weight_N / force_N : 1);
+  choose_scales(airframe_, force_scale_min, for_force, for_moment, out);
   for (std::size_t k = 0; k < n; ++k) {
-    const RotorGeometry& rotor = airframe_.rotors[k];
-    const Vector3 thrust = out.force_scale * for_force[k] + out.moment_scale * for_moment[k];
-    RotorOutput& o = out.rotors[k];
-    const bool fixed = rotor.gimbal_rad_max <= 0;
-    o = fixed ? RotorOutput{thrust.z(), {0, 0}} : rotor_output(thrust, gimbal_rad_[k], rotor.gimbal_rad_max);
-    const double limited_N = std::clamp(o.thrust_N, rotor.thrust_N_min, rotor.thrust_N_max);
-    out.thrust_limited = out.thrust_limited || std::abs(limited_N - o.thrust_N) > 1e-6;
-    o.thrust_N = limited_N;
-    for (double& angle : o.gimbal_rad) {
-      const double limited_rad = std::clamp(angle, -rotor.gimbal_rad_max, rotor.gimbal_rad_max);
-      out.gimbal_limited = out.gimbal_limited || limited_rad != angle;
-      angle = limited_rad;
-    }
-    gimbal_rad_[k] = o.gimbal_rad;
+    out.rotors[k] = limited(k, out.force_scale * for_force[k] + out.moment_scale * for_moment[k], out);
   }
+  if (out.thrust_limited || out.gimbal_limited) keep_moment(Q, out.moment_scale * demanded_B.moment, out);
+  for (std::size_t k = 0; k < n; ++k) gimbal_rad_[k] = out.rotors[k].gimbal_rad;
   out.achieved_B = rotor_wrench_B(airframe_, out.outputs(), com_offset_B);
   return out;
 }

@@ -29,8 +29,8 @@ RotorOutput rotor_output(const Vector3& thrust_B_N, const std::array<double, 2>&
 Wrench rotor_wrench_B(const Airframe& airframe, std::span<const RotorOutput> rotors, const Vector3& com_offset_B);
 
 struct AllocationConfig {
-  /// The demanded force is scaled down to no less than this share before the moment is scaled: dropping
-  /// all of it would be free fall.
+  /// The demanded force is scaled down to no less than this share, of it or of the weight if that is less, before the
+  /// moment is scaled: dropping all of it would be free fall.
   double force_scale_min = 0.6;
 };
 
@@ -48,7 +48,8 @@ struct Allocation {
   std::span<const RotorOutput> outputs() const { return {rotors.data(), rotor_count}; }
 };
 
-/// Q# = Q^T (Q Q^T)^-1 with limits; attitude goes first: force is scaled down before moment. On an airframe
+/// Q# = Q^T (Q Q^T)^-1 with limits; attitude goes first: force is scaled down before moment, and where rotors run
+/// into their limits all the same the others make up for the moment, whatever becomes of the force. On an airframe
 /// whose rotors are fixed Q has less than full rank and the wrench is reproduced where it can be, in the
 /// least-squares sense (a robot that tilts to move chooses its attitude before it allocates).
 /// Keeps the gimbal angles it last asked for. Real-time safe after construction; one thread.
@@ -69,6 +70,10 @@ class Allocator {
 
  private:
   using Block = Eigen::Matrix<double, 6, 3>;
+  using Blocks = std::array<Block, rotors_max>;
+  /// The rotor's setting within its limits that is nearest to a thrust; notes what it ran into.
+  RotorOutput limited(std::size_t rotor, const Vector3& thrust_B_N, Allocation& out) const;
+  void keep_moment(const Blocks& Q, const Vector3& moment_B, Allocation& out) const;
   Vector6 solve(const Matrix6& QQt, const Vector6& wrench) const;
 
   AllocationConfig config_;

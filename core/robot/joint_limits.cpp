@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/robot/chain_clearance.hpp"
+
 namespace eciton::robot {
 
 const char* LimitFault::describe(char* text, std::size_t size) const {
@@ -27,6 +29,10 @@ const char* LimitFault::describe(char* text, std::size_t size) const {
     case LimitKind::chain_tilt:
       std::snprintf(text, size, "member %zu would tilt %.3f rad against the base; at most %.3f rad is flyable", m,
                     value, limit);
+      break;
+    case LimitKind::collision:
+      std::snprintf(text, size, "members %zu and %zu would touch on the way: less than %.3f m between them", m,
+                    joint + 1, limit);
       break;
   }
   return text;
@@ -88,6 +94,14 @@ std::optional<LimitFault> check_chain_tilt(const Airframe& airframe, std::size_t
     }
   }
   return std::nullopt;
+}
+
+std::optional<LimitFault> check_chain_collision(const Airframe& airframe, std::span<const double> from_rad,
+                                                std::span<const double> to_rad) {
+  const ChainClearanceConfig config;
+  const auto near = check_chain_clearance(airframe, from_rad, to_rad, config);
+  if (!near) return std::nullopt;
+  return LimitFault{LimitKind::collision, near->first, near->second, near->clearance_m, config.clearance_m};
 }
 
 }  // namespace eciton::robot

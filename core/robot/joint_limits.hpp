@@ -1,5 +1,5 @@
-// What joints may be asked: each within its own limit, and no member of a chain tilted further against the
-// base than its gimbals can hold.
+// What joints may be asked: each within its own limit, no member of a chain tilted further against the base than
+// its gimbals can hold, and no two members in each other's way.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace eciton::robot {
 
-enum class LimitKind { count, not_finite, position, rate, chain_tilt };
+enum class LimitKind { count, not_finite, position, rate, chain_tilt, collision };
 
 /// Why a goal is refused.
 struct LimitFault {
   LimitKind kind = LimitKind::position;
   std::size_t member = 0;  // index in the chain
-  std::size_t joint = 0;   // index in the member
+  std::size_t joint = 0;   // index in the member; collision: of the other member in the chain
   double value = 0;
   double limit = 0;
 
@@ -44,5 +44,9 @@ ChainTilt chain_tilt(const Airframe& airframe, std::size_t base, std::span<const
 std::optional<LimitFault> check_chain_tilt(const Airframe& airframe, std::size_t base,
                                            std::span<const double> from_rad, std::span<const double> to_rad,
                                            double tilt_rad_max = chain_tilt_rad_max);
+
+/// On the same way: the members that would come too near to each other.
+std::optional<LimitFault> check_chain_collision(const Airframe& airframe, std::span<const double> from_rad,
+                                                std::span<const double> to_rad);
 
 }  // namespace eciton::robot

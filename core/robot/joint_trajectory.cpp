@@ -33,6 +33,7 @@ std::optional<LimitFault> JointTrajectory::go(std::span<const double> goal_rad, 
   for (std::size_t k = 0; k < size(); ++k) from_rad[k] = from[k].position;
   const std::span<const double> there = std::span(from_rad).first(size());
   if (const auto fault = check_chain_tilt(airframe_, base_, there, goal_rad, config_.tilt_rad_max)) return fault;
+  if (const auto fault = check_chain_collision(airframe_, there, goal_rad)) return fault;
 
   if (has_next_ && now_s >= next_.start_s()) present_ = next_;
   next_.go(std::span(from).first(size()), goal_rad, begin_s, rate, config_.acceleration_rad_s2_max);

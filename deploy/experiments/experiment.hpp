@@ -30,7 +30,7 @@ struct ExperimentConfig {
   std::uint32_t trials = 1;
   std::uint32_t modules = 0;  // 0: as many as the experiment needs
   std::string break_what;     // a control that must fail
-  bool paper_grid = true;  // scaling: the paper's law too, at each setting of a grid
+  bool paper_grid = true;     // scaling: the paper's law too, at each setting of a grid
   DockingSides docking;
   SimulationConfig simulation;
 
@@ -80,12 +80,13 @@ Figures only_trial(const std::vector<Figures>& trials);
 const std::vector<Experiment>& experiments();
 extern const Experiment hover_experiment;
 extern const Experiment docking_experiment;
-extern const Experiment morph_experiment;
 extern const Experiment tracking_experiment;
+extern const Experiment morph_experiment;
 extern const Experiment ablation_experiment;
 extern const Experiment scaling_experiment;
 extern const Experiment wind_experiment;
 extern const Experiment silence_experiment;
+extern const Experiment crossing_experiment;
 extern const Experiment forest_experiment;
 
 /// What it is made of: trials as the config says, or the experiment's own runs.

@@ -5,6 +5,20 @@
 #include "services/control/control_service.hpp"
 
 namespace eciton::control {
+namespace {
+
+Fence everywhere() { return {robot::Vector3::Constant(-1e9), robot::Vector3::Constant(1e9)}; }
+
+/// A tracked reference goes along the fence, not through it.
+void keep_inside(const Fence& fence, robot::PoseReference& moving) {
+  for (int k = 0; k < 3; ++k) {
+    const double inside = std::clamp(moving.p_WM[k], fence.low_W[k], std::max(fence.low_W[k], fence.high_W[k]));
+    if (inside != moving.p_WM[k]) moving.v_WM[k] = 0;
+    moving.p_WM[k] = inside;
+  }
+}
+
+}  // namespace
 
 void ControlService::take_requests(TimePoint now) noexcept {
   while (const auto sample = mode_request_.take()) {
@@ -50,17 +64,30 @@ double ControlService::start_s(std::int64_t start_ns, TimePoint now) const {
 
 void ControlService::take_flight_goal(const msg::FlightGoal& goal, TimePoint now) noexcept {
   if (!concerns_us(goal.module_id) || goal.correlation_id == answered_flight_) return;
-  const FlightDecision decision = decide_goal(goal);
+  const FlightDecision decision = decide_goal(goal, now);
   answer_flight(goal.module_id, goal.correlation_id, decision, now);
   if (decision.accepted) begin(goal, now);
 }
 
-FlightDecision ControlService::decide_goal(const msg::FlightGoal& goal) const noexcept {
+FlightDecision ControlService::decide_goal(const msg::FlightGoal& goal, TimePoint now) noexcept {
   switch (goal.action) {
-    case msg::FlightAction::takeoff:
-      return decide(mode_, FlightRequest::takeoff, conditions_);
-    case msg::FlightAction::goto_:
-      return decide_motion();
+    case msg::FlightAction::takeoff: {
+      const FlightDecision decision = decide(mode_, FlightRequest::takeoff, conditions_);
+      if (!decision.accepted) return decision;
+      if (const auto fault = check_takeoff(motion_.p_WM, goal.p_WM_m[2], goal_limits())) return refuse(*fault);
+      return decision;
+    }
+    case msg::FlightAction::goto_: {
+      const FlightDecision decision = decide_motion();
+      if (!decision.accepted) return decision;
+      if (const auto fault = check_fields(goal, now)) return refuse(*fault);
+      const robot::Pose X_goal{robot::vector(goal.p_WM_m), robot::rotation(goal.q_WM)};
+      const double start = start_s(goal.start_ns, now);
+      if (const auto fault = check_way(reference_.way_to(X_goal, goal.speed_m_s, start, seconds(now)))) {
+        return refuse(*fault);
+      }
+      return decision;
+    }
     case msg::FlightAction::land:
       if (in_chain()) return {mode_, false, "a chain does not land: undock first"};
       return decide(mode_, FlightRequest::land, conditions_);
@@ -73,6 +100,52 @@ FlightDecision ControlService::decide_motion() const noexcept {
     return {mode_, false, "docking is under way: wait until it is done"};
   }
   return decide(mode_, FlightRequest::go_to, conditions_);
+}
+
+GoalLimits ControlService::goal_limits() const {
+  return {.fence = {robot::vector(config_.fence_low_m), robot::vector(config_.fence_high_m)},
+          .height_m_min = config_.height_m_min};
+}
+
+FlightDecision ControlService::refuse(const GoalFault& fault) noexcept {
+  refusal_ = fault;
+  return {mode_, false, refusal_.text.data()};
+}
+
+std::optional<GoalFault> ControlService::check_fields(const msg::FlightGoal& goal, TimePoint now) const noexcept {
+  const GoalLimits limits = goal_limits();
+  if (const auto fault = check_pose(goal.p_WM_m, goal.q_WM, 0, limits)) return fault;
+  if (const auto fault = check_speed(goal.speed_m_s, limits)) return fault;
+  return check_start(to_s(from_ns(goal.start_ns) - now), limits);
+}
+
+std::optional<GoalFault> ControlService::check_fields(const msg::PathGoal& goal, TimePoint now) const noexcept {
+  const GoalLimits limits = goal_limits();
+  for (std::size_t k = 0; k < goal.waypoints.size(); ++k) {
+    if (const auto fault = check_pose(goal.waypoints[k].p_WM_m, goal.waypoints[k].q_WM, k + 1, limits)) return fault;
+  }
+  if (const auto fault = check_speed(goal.speed_m_s, limits)) return fault;
+  return check_start(to_s(from_ns(goal.start_ns) - now), limits);
+}
+
+template <class Way>
+std::optional<GoalFault> ControlService::check_way(const Way& way) noexcept {
+  // Where it stands it stands: the beginning is not asked about, only that what follows is no lower.
+  constexpr int samples = 40;
+  const GoalLimits limits = goal_limits();
+  const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
+  std::array<robot::PoseReference, robot::members_max> members;
+  double height_m_low = limits.height_m_min;
+  for (int k = 0; k <= samples; ++k) {
+    const double t_s = way.start_s() + way.duration_s() * k / samples;
+    const std::span at = std::span(members).first(reference_.members_on(way.at(t_s), t_s, members));
+    if (k == 0) {
+      for (const robot::PoseReference& m : at) height_m_low = std::min(height_m_low, m.p_WM.z());
+    } else if (const auto fault = check_moment(at, height_m_low, limits, c_B, reach_)) {
+      return fault;
+    }
+  }
+  return std::nullopt;
 }
 
 void ControlService::answer_flight(std::uint32_t module_id, std::uint64_t correlation_id,
@@ -97,6 +170,8 @@ void ControlService::begin(const msg::FlightGoal& goal, TimePoint now) noexcept 
   switch (goal.action) {
     case msg::FlightAction::takeoff:
       pose_control_.reset();
+      separation_.reset();
+      neighbourhood_.accept_those_near(motion_.p_WM, separation_.config().distance_m, now);
       reference_.hold({motion_.p_WM, motion_.R_WM});
       reference_.move({{motion_.p_WM.x(), motion_.p_WM.y(), goal.p_WM_m[2]}, robot::upright(motion_.R_WM)},
                       config_.takeoff_m_s, now_s, now_s);
@@ -118,15 +193,22 @@ void ControlService::take_path_goal(const msg::PathGoal& goal, TimePoint now) no
   if (decision.accepted && !reference_.at_rest(seconds(now))) {
     decision = {mode_, false, "still moving: a path begins at rest"};
   }
-  answer_flight(goal.module_id, goal.correlation_id, decision, now);
-  if (!decision.accepted) return;
+  if (decision.accepted) {
+    if (const auto fault = check_fields(goal, now)) decision = refuse(*fault);
+  }
   std::array<robot::Pose, decltype(goal.waypoints)::bound()> waypoints;
   for (std::size_t k = 0; k < goal.waypoints.size(); ++k) {
     waypoints[k] = {robot::vector(goal.waypoints[k].p_WM_m), robot::rotation(goal.waypoints[k].q_WM)};
   }
   see_base(now);
-  reference_.follow(std::span<const robot::Pose>(waypoints).first(goal.waypoints.size()), goal.speed_m_s,
-                    start_s(goal.start_ns, now), seconds(now));
+  const std::span through = std::span<const robot::Pose>(waypoints).first(goal.waypoints.size());
+  const double start = start_s(goal.start_ns, now);
+  if (decision.accepted) {
+    const auto fault = check_way(reference_.way_through(through, goal.speed_m_s, start, seconds(now)));
+    if (fault) decision = refuse(*fault);
+  }
+  answer_flight(goal.module_id, goal.correlation_id, decision, now);
+  if (decision.accepted) reference_.follow(through, goal.speed_m_s, start, seconds(now));
 }
 
 void ControlService::take_morph_goal(const msg::MorphGoal& goal, TimePoint now) noexcept {
@@ -168,6 +250,10 @@ void ControlService::take_docking_reference(const msg::DockingReference& referen
       reference.epoch != 0 && in_chain() && reference.epoch == view_.active_epoch && is_member(reference.module_id);
   if (!alone && !of_chain) return;
   if (!decide(mode_, FlightRequest::go_to, conditions_).accepted) return;
+  if (check_pose(reference.p_WM_m, reference.q_WM, 0, {.fence = everywhere(), .height_m_min = -1e9}) ||
+      !robot::vector(reference.v_WM_m_s).allFinite() || !robot::vector(reference.w_WM_M_rad_s).allFinite()) {
+    return;  // not a reference: the last one is held
+  }
   mode_ = FlightMode::hover;
   goal_pending_ = false;
   robot::PoseReference moving;
@@ -176,6 +262,7 @@ void ControlService::take_docking_reference(const msg::DockingReference& referen
   moving.v_WM = robot::vector(reference.v_WM_m_s);
   moving.w_WM_M = robot::vector(reference.w_WM_M_rad_s);
   see_base(now);
+  keep_inside(goal_limits().fence, moving);
   reference_.track(moving, seconds(at));
 }
 

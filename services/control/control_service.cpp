@@ -38,6 +38,8 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
             .paper_gain = config.paper_gain,
             .sign = config.law_sign}),
       allocator_(airframe),
+      reach_(airframe),
+      neighbourhood_(config.module_id),
       module_state_(ring.create_reader(topics::module_state)),
       joint_state_(ring.create_reader(topics::joint_state)),
       rotor_state_(ring.create_reader(topics::rotor_state)),
@@ -118,8 +120,8 @@ void ControlService::take_state(TimePoint now) noexcept {
     if (s.module_id == config_.module_id) {
       state_ = s;
       state_at_ = from_ns(s.stamp_ns);
-    } else if (Peer* p = peer(s.module_id)) {
-      p->state = s;
+    } else {
+      neighbourhood_.hear(s, now - sample->age);
       if (in_chain() && s.module_id == view_.base_id) smooth(X_WM_base_, pose_of(s));
     }
   }
@@ -135,7 +137,7 @@ void ControlService::take_surroundings(TimePoint now) noexcept {
   while (const auto sample = joint_state_.take()) {
     const msg::JointState& joints = sample->value;
     if (joints.module_id != config_.module_id) {
-      if (Peer* p = peer(joints.module_id)) p->joints = joints;
+      neighbourhood_.hear(joints);
       continue;
     }
     for (std::size_t k = 0; k < airframe_.joints.size() && k < joints.joints.size(); ++k) {
@@ -146,26 +148,13 @@ void ControlService::take_surroundings(TimePoint now) noexcept {
     if (sample->value.module_id == config_.module_id) rotors_armed_ = sample->value.armed;
   }
   while (const auto sample = docking_state_.take()) {
-    if (sample->value.module_id == config_.module_id) {
-      docking_ = sample->value;
-    } else if (Peer* p = peer(sample->value.module_id)) {
-      p->docking = sample->value;
-      p->docking_at = now - sample->age;
-    }
+    neighbourhood_.hear(sample->value, now - sample->age);
+    if (sample->value.module_id == config_.module_id) docking_ = sample->value;
   }
   while (const auto sample = beacon_.take()) {
+    neighbourhood_.hear(sample->value);
     if (sample->value.module_id == config_.module_id) duplicate_id_ = sample->value.duplicate_id;
   }
-}
-
-ControlService::Peer* ControlService::peer(std::uint32_t module_id) noexcept {
-  Peer* free = nullptr;
-  for (Peer& p : peers_) {
-    if (p.module_id == module_id) return &p;
-    if (p.module_id == 0 && free == nullptr) free = &p;
-  }
-  if (free != nullptr) free->module_id = module_id;
-  return free;  // nullptr: more peers in range than a chain can have; the rest is nobody we link with
 }
 
 bool ControlService::is_member(std::uint32_t module_id) const {
@@ -178,7 +167,7 @@ bool ControlService::is_docking(const msg::DockingState& state) {
 
 const msg::DockingState& ControlService::docking_now() const {
   if (!in_chain() || is_docking(docking_)) return docking_;
-  for (const Peer& p : peers_) {
+  for (const Peer& p : neighbourhood_.peers()) {
     // While it docks it says so many times a second; a member that fell silent ties nobody down.
     if (is_docking(p.docking) && last_step_ - p.docking_at < docking_silence && is_member(p.module_id))
       return p.docking;
@@ -189,10 +178,14 @@ const msg::DockingState& ControlService::docking_now() const {
 void ControlService::take_chain(TimePoint now) noexcept {
   while (const auto sample = chain_view_.take()) {
     const msg::ChainView& view = sample->value;
+    neighbourhood_.hear(view);
     if (view.module_id != config_.module_id || !view.active || view.active_epoch == view_.active_epoch) continue;
     const double now_s = seconds(now);
     law_.reset();
     common_W_ = {};
+    hand_over_.begin();
+    if (separation_.gives_way()) reference_.hold({flown_.p_WM, flown_.R_WM});
+    separation_.reset();
     if (view.members.size() > 1) {
       enter_chain(view, now);
     } else if (in_chain()) {
@@ -210,7 +203,7 @@ void ControlService::enter_chain(const msg::ChainView& view, TimePoint now) noex
   for (std::size_t i = 0; i < view.members.size(); ++i) {
     const std::uint32_t id = view.members[i];
     const std::span own_part = std::span(joint_rad).subspan(i * joints_each, joints_each);
-    const Peer* other = id == config_.module_id ? nullptr : peer(id);
+    const Peer* other = id == config_.module_id ? nullptr : neighbourhood_.find(id);
     for (std::size_t k = 0; k < joints_each; ++k) {
       if (id == config_.module_id) own_part[k] = joint_rad_[k];
       if (other != nullptr && k < other->joints.joints.size()) own_part[k] = other->joints.joints[k].position_rad;
@@ -289,7 +282,7 @@ void ControlService::judge(TimePoint now) noexcept {
   conditions_.state_age_s = to_s(now - state_at_);
   const bool good = conditions_.state_usable && conditions_.state_age_s <= limits.state_age_s_max;
   conditions_.state_good_s = good ? conditions_.state_good_s + dt_s : 0;
-  conditions_.trajectory_finished = goal_pending_ && reference_.arrived(seconds(now));
+  conditions_.trajectory_finished = goal_pending_ && reference_.arrived(seconds(now)) && !separation_.gives_way();
   conditions_.landed =
       mode_ == FlightMode::land && touchdown_.update(allocation_.achieved_B.force.norm(),
                                                      airframe_.mass_kg * robot::gravity_m_s2, motion_.v_WM.z(), dt_s);
@@ -303,6 +296,7 @@ void ControlService::follow_mode(TimePoint now) noexcept {
   if (before == FlightMode::failsafe && mode_ == FlightMode::hover) {
     // Apart it stays where it drifted to; a member of a chain goes back to its place in it.
     if (!in_chain()) reference_.hold({motion_.p_WM, robot::upright(motion_.R_WM)});
+    separation_.reset();
     pose_control_.reset();
   }
   const bool done = goal_pending_ && (conditions_.trajectory_finished || conditions_.landed);
@@ -311,19 +305,35 @@ void ControlService::follow_mode(TimePoint now) noexcept {
   if (goal_is_ours_) answer(msg::GoalKind::flight, goal_id_, msg::GoalPhase::succeeded, "", now);
 }
 
+robot::PoseReference ControlService::separated(TimePoint now, double dt_s) noexcept {
+  const robot::PoseReference nominal = reference_.at(seconds(now));
+  if (in_chain() || !config_.separation) return nominal;
+  const SeparationConfig& keep = separation_.config();
+  Fence fence{robot::vector(config_.fence_low_m), robot::vector(config_.fence_high_m)};
+  // From and to the ground it goes whatever the ground's height is.
+  if (mode_ == FlightMode::takeoff || mode_ == FlightMode::land) fence.low_W.z() = -1e9;
+  return separation_.update({.nominal = nominal,
+                             .p_WM_ahead = reference_.at(seconds(now) + keep.look_ahead_s).p_WM,
+                             .p_WM = motion_.p_WM,
+                             .neighbours = neighbourhood_.keep_clear_of(motion_.p_WM, keep.distance_m, now),
+                             .fence = fence},
+                            dt_s);
+}
+
 void ControlService::write_rotors(TimePoint now) noexcept {
   // With the state lost there is nothing to control by: silence hands over to the hardware host, which flies
   // the module down on the IMU.
   if (mode_ == FlightMode::failsafe) return;
   const double dt_s = first_step_ ? config_.period_s : std::clamp(to_s(now - last_step_), 1e-4, 0.02);
   const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
-  const robot::Wrench feed_forward_W = feed_forward(dt_s);
   // A chain that docks, or is docked to, must hit a port as a module does: as stiff.
   const bool gentle = in_chain() && !is_docking(docking_now());
   pose_control_.set_gains(gentle ? between(gains_assembled(), gains_free(), config_.stiffness) : gains_free());
+  const robot::Wrench feed_forward_W = hand_over_.update(feed_forward(dt_s), dt_s);
+  flown_ = separated(now, dt_s);
   const robot::Wrench demanded_B =
       pose_control_.update({.state = motion_,
-                            .reference = reference_.at(seconds(now)),
+                            .reference = flown_,
                             .mass_kg = airframe_.mass_kg,
                             .I_M_kg_m2 = robot::composite_inertia(airframe_, joint_angles()),
                             .feed_forward_W = feed_forward_W,
@@ -372,6 +382,7 @@ void ControlService::write_idle(TimePoint now) noexcept {
   }
   rotor_command_.write(out);
   pose_control_.reset();
+  hand_over_.reset();
 }
 
 void ControlService::report_mode(TimePoint now) noexcept {

@@ -16,7 +16,11 @@
 #include "services/control/disturbance_feedback.hpp"
 #include "services/control/flight_mode.hpp"
 #include "services/control/flight_reference.hpp"
+#include "services/control/goal_checks.hpp"
+#include "services/control/hand_over.hpp"
+#include "services/control/neighbourhood.hpp"
 #include "services/control/pose_control.hpp"
+#include "services/control/separation.hpp"
 
 namespace eciton::control {
 
@@ -33,6 +37,10 @@ struct ControlConfig {
   double takeoff_m_s = 0.5;
   double landing_m_s = 0.3;
   double speed_m_s = 0.5;
+  bool separation = true;                          // keeps its distance from modules it does not dock with
+  std::array<double, 3> fence_low_m{-50, -50, 0};  // of the box, in W, that centres of mass stay in
+  std::array<double, 3> fence_high_m{50, 50, 30};
+  double height_m_min = 0.3;      // of goals
   double observer_gain_1_s = 10;  // as estimation's config says: the law's rate follows from it
 
   template <class V>
@@ -47,6 +55,10 @@ struct ControlConfig {
     v("takeoff_m_s", takeoff_m_s, in_range(0.05, 2));
     v("landing_m_s", landing_m_s, in_range(0.05, 1));
     v("speed_m_s", speed_m_s, in_range(0.05, 2));
+    v("separation", separation);
+    v("fence_low_m", fence_low_m);
+    v("fence_high_m", fence_high_m);
+    v("height_m_min", height_m_min, in_range(-100, 100));
   }
 };
 
@@ -59,7 +71,7 @@ class ControlService final : public runtime::Service {
     return runtime::on(module_state_, from_s(config_.period_s), runtime::Phase::control);
   }
   void step(TimePoint now) noexcept override;
-  std::uint32_t state_version() const noexcept override { return 2; }
+  std::uint32_t state_version() const noexcept override { return 3; }
   void save_state(runtime::StateWriter& writer) const noexcept override { visit_state(*this, writer); }
   void load_state(runtime::StateReader& reader) noexcept override;
   void describe(msg::Heartbeat& heartbeat) const noexcept override { heartbeat.flight_mode = to_message(mode_); }
@@ -71,9 +83,10 @@ class ControlService final : public runtime::Service {
 
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
-    v(self.mode_, self.reference_, self.pose_control_, self.law_, self.feedback_, self.allocator_, self.epoch_,
-      self.last_step_, self.view_, self.goal_id_, self.goal_is_ours_, self.goal_pending_, self.contact_goal_now_,
-      self.answered_mode_, self.answered_flight_, self.answered_morph_, self.answered_contact_);
+    v(self.mode_, self.reference_, self.separation_, self.flown_, self.pose_control_, self.law_, self.feedback_,
+      self.allocator_, self.epoch_, self.last_step_, self.view_, self.goal_id_, self.goal_is_ours_,
+      self.goal_pending_, self.contact_goal_now_, self.answered_mode_, self.answered_flight_, self.answered_morph_,
+      self.answered_contact_);
   }
 
   /// After a start: whether it is known what the rotors do and what follows from it.
@@ -92,7 +105,15 @@ class ControlService final : public runtime::Service {
   void take_docking_reference(const msg::DockingReference& reference, TimePoint at, TimePoint now) noexcept;
   bool concerns_us(std::uint32_t module_id) const;
   double start_s(std::int64_t start_ns, TimePoint now) const;
-  FlightDecision decide_goal(const msg::FlightGoal& goal) const noexcept;
+  FlightDecision decide_goal(const msg::FlightGoal& goal, TimePoint now) noexcept;
+  GoalLimits goal_limits() const;
+  FlightDecision refuse(const GoalFault& fault) noexcept;
+  /// Of goto and path: the fields, ...
+  std::optional<GoalFault> check_fields(const msg::FlightGoal& goal, TimePoint now) const noexcept;
+  std::optional<GoalFault> check_fields(const msg::PathGoal& goal, TimePoint now) const noexcept;
+  /// ... and the way they lead, of every member.
+  template <class Way>
+  std::optional<GoalFault> check_way(const Way& way) noexcept;
   FlightDecision decide_motion() const noexcept;
   void answer_flight(std::uint32_t module_id, std::uint64_t correlation_id, const FlightDecision& decision,
                      TimePoint now) noexcept;
@@ -102,6 +123,8 @@ class ControlService final : public runtime::Service {
   void see_base(TimePoint now) noexcept;
   /// Contact wrenches asked for, each turned into world axes by its member's reference.
   std::span<const robot::Wrench> desired_contacts(std::span<robot::Wrench> room, TimePoint now) const noexcept;
+  /// The reference to fly: it gives way to others, unless this module is part of a chain.
+  robot::PoseReference separated(TimePoint now, double dt_s) noexcept;
   void judge(TimePoint now) noexcept;
   void follow_mode(TimePoint now) noexcept;
   void write_rotors(TimePoint now) noexcept;
@@ -120,11 +143,15 @@ class ControlService final : public runtime::Service {
   ControlConfig config_;
   robot::Airframe airframe_;
   FlightReference reference_;
+  Separation separation_;
   PoseControl pose_control_;
   ContactWrenchLaw law_;
   DisturbanceFeedback feedback_;
+  HandOver hand_over_;  // from the one's feed-forward to the other's
   robot::Allocator allocator_;
   TouchdownDetector touchdown_;
+  robot::HoverReach reach_;
+  GoalFault refusal_;  // the last one's words
   FlightMode mode_ = FlightMode::disarmed;
   FlightConditions conditions_;
   TimePoint law_updated_{};
@@ -139,6 +166,7 @@ class ControlService final : public runtime::Service {
   msg::ModuleState state_;            // the newest
   TimePoint state_at_{};
   ModuleMotion motion_;  // extrapolated to now
+  robot::PoseReference flown_;
   std::array<double, robot::joints_max> joint_rad_{};
   robot::Wrench external_W_;
   robot::Wrench common_W_;  // our share of what acts on the whole chain, weighed with the members that are fresh
@@ -150,16 +178,7 @@ class ControlService final : public runtime::Service {
 
   void take_contact_wrench(const msg::ContactWrench& w, TimePoint now) noexcept;
 
-  // Of the other members: where they are and how their joints stand, for joining, and whether they are docking.
-  struct Peer {
-    std::uint32_t module_id = 0;
-    msg::ModuleState state;
-    msg::JointState joints;
-    msg::DockingState docking;
-    TimePoint docking_at{};
-  };
-  std::array<Peer, robot::members_max> peers_{};
-  Peer* peer(std::uint32_t module_id) noexcept;
+  Neighbourhood neighbourhood_;
 
   std::uint64_t goal_id_ = 0;  // the one being flown
   bool goal_is_ours_ = false;  // to answer

@@ -38,6 +38,12 @@ class FlightReference {
   void move(const robot::Pose& X_WM, double speed_m_s, double start_s, double now_s);
   /// From the present reference, which is at rest, through poses to rest at the last one.
   void follow(std::span<const robot::Pose> waypoints, double speed_m_s, double start_s, double now_s);
+  /// The ways that these two would fly, to be looked at beforehand.
+  robot::PoseMotion way_to(const robot::Pose& X_WM, double speed_m_s, double start_s, double now_s) const;
+  robot::PoseSpline way_through(std::span<const robot::Pose> waypoints, double speed_m_s, double start_s,
+                                double now_s) const;
+  /// What a way of the base means for all members, or for the module alone, at one time of it; how many.
+  std::size_t members_on(const robot::PoseReference& way, double t_s, std::span<robot::PoseReference> members) const;
   /// A reference that moves by itself, given again and again.
   void track(const robot::PoseReference& reference, double stamp_s);
   /// Straight down from the present reference, for ever.
@@ -54,7 +60,7 @@ class FlightReference {
                                          double now_s) {
     return joints_.go(joint_rad, rate_rad_s, now_s, start_s);
   }
-  /// Out of the chain, standing where the reference is now.
+  /// Out of the chain, coming to rest from where the reference is now.
   void leave(double now_s);
 
   robot::PoseReference at(double now_s) const;
@@ -71,8 +77,9 @@ class FlightReference {
 
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
-    v(self.kind_, self.motion_, self.path_, self.tracked_, self.tracked_s_, self.in_chain_, self.place_,
-      self.offset_p_, self.offset_R_, self.joints_);
+    v(self.kind_, self.motion_, self.path_, self.tracked_, self.tracked_s_, self.slip_p_, self.slip_v_,
+      self.slip_phi_, self.slip_s_, self.in_chain_, self.place_, self.offset_p_, self.offset_R_, self.slowing_v_,
+      self.joined_s_, self.joints_);
   }
 
  private:
@@ -89,12 +96,19 @@ class FlightReference {
   robot::PoseSpline path_;
   robot::PoseReference tracked_;
   double tracked_s_ = 0;
+  // From the tracked reference to the one before it, when tracking began: it fades, so that beginning moves nothing.
+  robot::Vector3 slip_p_ = robot::Vector3::Zero();
+  robot::Vector3 slip_v_ = robot::Vector3::Zero();
+  robot::Vector3 slip_phi_ = robot::Vector3::Zero();
+  double slip_s_ = 0;
 
   bool in_chain_ = false;
   ChainPlace place_;
   robot::Vector3 offset_p_ = robot::Vector3::Zero();      // from what the shared base says to where this
   robot::Matrix3 offset_R_ = robot::Matrix3::Identity();  // module sees itself, fixed when it joined
-  robot::JointTrajectory joints_;                         // of all members
+  robot::Vector3 slowing_v_ = robot::Vector3::Zero();     // its speed when it joined, which runs out
+  double joined_s_ = 0;
+  robot::JointTrajectory joints_;  // of all members
 };
 
 }  // namespace eciton::control

@@ -82,8 +82,9 @@ Wrench PoseControl::update(const PoseControlInput& in, double dt_s) {
   integrate(integral_m_s2_, gains_.ki_1_s3, e_r, dt_s, config_.integral_m_s2_max, in.force_saturated);
   integrate(integral_rad_s2_, gains_.ai_1_s3, e_R, dt_s, config_.integral_rad_s2_max, in.moment_saturated);
 
-  const Vector3 acceleration = gains_.kp_1_s2.cwiseProduct(e_r) + integral_m_s2_ + gains_.kd_1_s.cwiseProduct(e_v) +
-                               in.reference.a_WM + Vector3(0, 0, robot::gravity_m_s2);
+  const Vector3 correction =
+      shortened(gains_.kp_1_s2.cwiseProduct(e_r) + gains_.kd_1_s.cwiseProduct(e_v), config_.correction_m_s2_max);
+  const Vector3 acceleration = correction + integral_m_s2_ + in.reference.a_WM + Vector3(0, 0, robot::gravity_m_s2);
   // The reference's angular acceleration, seen from axes that turn with the module.
   const Vector3 alpha_ff = R_MD * in.reference.alpha_WM_M - w.cross(w_d);
   const Vector3 alpha =

@@ -37,6 +37,7 @@ struct PoseControlConfig {
   Vector3 integral_rad_s2_max{8, 8, 8};
   double position_error_m_max = 1.0;  // larger errors count as this
   double attitude_error_rad_max = 0.8;
+  double correction_m_s2_max = 9;  // of errors of position and velocity together: what level rotors can give
 };
 
 /// A module as it is: M's origin is the composite centre of mass.

@@ -28,6 +28,13 @@ TEST_F(RefusalTest, InTheAirWhatCannotBeIsRefused) {
   pilot_.bring_to_hover(heights(2));
   expect_refusal(pilot_.op().arm(1), "flying");
   expect_refusal(pilot_.op().disarm(1), "land");
+  expect_refusal(pilot_.op().go_to(1, {80, 0, 1.5}, 0, 0), "x 80 m is outside the fence: -50 to 50 m");
+  expect_refusal(pilot_.op().go_to(1, {0, 0, 0.1}, 0, 0), "z 0.1 m is outside the fence");
+  expect_refusal(pilot_.op().go_to(1, {0, 0, 1.5}, 0, 7), "speed_m_s 7");
+  msg::Waypoint over{.p_WM_m = {0, 0, 1.5}, .q_WM = {0, 1, 0, 0}};
+  expect_refusal(pilot_.op().fly_path(1, {&over, 1}, 0), "a tilt of");
+  over.q_WM = {0, 0, 0, 0};
+  expect_refusal(pilot_.op().fly_path(1, {&over, 1}, 0), "waypoint 1: q_WM has length 0");
   expect_refusal(pilot_.op().dock(1, 1), "two modules");
   expect_refusal(pilot_.op().dock(1, 9), "never heard");
   ASSERT_EQ(pilot_.dock(2, 1, 40).progress, GoalProgress::succeeded);

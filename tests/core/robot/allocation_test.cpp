@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -177,6 +178,138 @@ TEST(AllocationTest, PitchingOverNeverFlipsAGimbal) {
     }
   }
   EXPECT_LT(jump, 0.1);
+}
+
+/// The least error of the moment that any setting of the rotors within their limits makes, by trying: from many
+/// starts, one number after another up and down by steps that shrink. Knows nothing of the allocator.
+double least_moment_error(const Airframe& a, const Vector3& moment_B, std::mt19937& rng) {
+  std::uniform_real_distribution<double> u(0, 1);
+  const auto error = [&](const std::array<double, 9>& x) {
+    std::array<RotorOutput, 3> rotors;
+    for (std::size_t k = 0; k < 3; ++k) {
+      rotors[k] = {1 + 20 * x[3 * k], {4 * x[3 * k + 1] - 2, 4 * x[3 * k + 2] - 2}};
+    }
+    return (rotor_wrench_B(a, rotors, Vector3::Zero()).moment - moment_B).norm();
+  };
+  double best = 1e9;
+  for (int start = 0; start < 12; ++start) {
+    std::array<double, 9> x;
+    for (double& v : x) v = u(rng);
+    double now = error(x);
+    for (double step = 0.3; step > 1e-3; step *= 0.8) {
+      for (double& v : x) {
+        for (const double by : {step, -step}) {
+          const double before = v;
+          v = std::clamp(v + by, 0.0, 1.0);
+          const double then = error(x);
+          if (then < now) {
+            now = then;
+          } else {
+            v = before;
+          }
+        }
+      }
+    }
+    best = std::min(best, now);
+  }
+  return best;
+}
+
+/// Hovering tilted a little, then asked for more than there is.
+struct Demand {
+  Wrench hover, too_much;
+};
+Demand draw(const Airframe& a, std::mt19937& rng, double force_N, double moment_Nm) {
+  const Matrix3 R = exp_so3(random_vector(rng, 0.4));
+  const Vector3 up = R.transpose() * Vector3(0, 0, a.mass_kg * gravity_m_s2);
+  const Vector3 f = random_vector(rng, force_N), m = random_vector(rng, moment_Nm);
+  return {{up, Vector3::Zero()}, {up + f, m}};
+}
+
+TEST(AllocationTest, TheMomentIsKeptWhateverForceIsAskedFor) {
+  const Airframe a = legion();
+  std::mt19937 rng(5);
+  int saturated = 0, kept = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Demand d = draw(a, rng, 60, 1.5);
+    Allocator allocator(a);
+    allocator.update(d.hover, Vector3::Zero());
+    const Allocation out = allocator.update(d.too_much, Vector3::Zero());
+    if (!out.saturated()) continue;
+    ++saturated;
+    if ((out.achieved_B.moment - d.too_much.moment).norm() < 0.02 * d.too_much.moment.norm()) ++kept;
+    for (const RotorOutput& o : out.outputs()) {
+      EXPECT_GE(o.thrust_N, 1.0);
+      EXPECT_LE(o.thrust_N, 21.0);
+      EXPECT_LE(std::abs(o.gimbal_rad[0]), 2.0);
+      EXPECT_LE(std::abs(o.gimbal_rad[1]), 2.0);
+    }
+  }
+  EXPECT_GT(saturated, 1000);
+  EXPECT_GE(kept, saturated * 0.998);
+}
+
+TEST(AllocationTest, NoSettingOfTheRotorsKeepsMuchMoreOfTheMoment) {
+  const Airframe a = legion();
+  std::mt19937 rng(6);
+  int compared = 0, worse = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Demand d = draw(a, rng, 40, 3);
+    Allocator allocator(a);
+    allocator.update(d.hover, Vector3::Zero());
+    const Allocation out = allocator.update(d.too_much, Vector3::Zero());
+    // Where the moment is scaled down some force is kept on purpose: no free fall.
+    if (!out.saturated() || out.moment_scale < 1) continue;
+    ++compared;
+    const double size = d.too_much.moment.norm();
+    const double error = (out.achieved_B.moment - d.too_much.moment).norm();
+    if (error > least_moment_error(a, d.too_much.moment, rng) + 0.05 * size) ++worse;
+  }
+  EXPECT_GT(compared, 20);
+  EXPECT_LE(worse, 1);
+}
+
+TEST(AllocationTest, ADemandThatGrowsSlowlyMovesTheRotorsSlowlyAndTurnsAGimbalOverOnceAtTheMost) {
+  // Where a thrust leaves the limits of one branch the gimbals go to the other, half a turn away; never back and
+  // forth.
+  const Airframe a = legion();
+  std::mt19937 rng(7);
+  int runs_without = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Demand d = draw(a, rng, 40, 2);
+    Allocator allocator(a);
+    std::array<RotorOutput, 3> before{};
+    std::array<int, 3> turned_over{};
+    for (int k = 0; k <= 4000; ++k) {
+      const double s = k / 4000.0;
+      const Allocation out = allocator.update(d.hover + (d.too_much - d.hover) * s, Vector3::Zero());
+      for (std::size_t r = 0; r < 3; ++r) {
+        const RotorOutput& now = out.rotors[r];
+        if (k > 0) {
+          const double by_rad = std::max(std::abs(now.gimbal_rad[0] - before[r].gimbal_rad[0]),
+                                         std::abs(now.gimbal_rad[1] - before[r].gimbal_rad[1]));
+          turned_over[r] += by_rad > 0.3 ? 1 : 0;
+        }
+        before[r] = now;
+      }
+    }
+    for (const int times : turned_over) EXPECT_LE(times, 1) << i;
+    runs_without += turned_over == std::array<int, 3>{} ? 1 : 0;
+  }
+  EXPECT_GE(runs_without, 18);
+}
+
+TEST(AllocationTest, BetweenTwoBranchesItStaysOnTheOneItIsOn) {
+  // A thrust that trembles about the middle between the two: gimbals follow, none turns over.
+  std::mt19937 rng(8);
+  std::array<double, 2> present{0.9, 1.5};
+  const Vector3 about = thrust_vector_B({8, {0.9, 1.55}});
+  for (int k = 0; k < 1000; ++k) {
+    const RotorOutput o = rotor_output(about + random_vector(rng, 0.3), present, 2.0);
+    EXPECT_LT(std::abs(o.gimbal_rad[1] - present[1]), 0.3);
+    present = o.gimbal_rad;
+    EXPECT_LT(std::abs(present[1] - 1.55), 0.3);
+  }
 }
 
 TEST(AllocationTest, FixedRotorsReproduceWhatTheyCan) {
