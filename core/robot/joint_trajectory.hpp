@@ -12,7 +12,7 @@
 namespace eciton::robot {
 
 struct JointTrajectoryConfig {
-  double rate_rad_s = 0.10;  // default of a goal: a joint's own friction takes 2 Nms/rad of its 0.3 Nm
+  double rate_rad_s = 0.06;  // default of a goal: a joint's own friction takes 2 Nms/rad of its 0.3 Nm
   double acceleration_rad_s2_max = 0.5;
   double tilt_rad_max = chain_tilt_rad_max;
 };

@@ -85,6 +85,7 @@ extern const Experiment morph_experiment;
 extern const Experiment ablation_experiment;
 extern const Experiment scaling_experiment;
 extern const Experiment wind_experiment;
+extern const Experiment release_experiment;
 extern const Experiment silence_experiment;
 extern const Experiment crossing_experiment;
 extern const Experiment forest_experiment;

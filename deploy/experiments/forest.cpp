@@ -1,5 +1,6 @@
 // forest: outdoors, by LiDAR-inertial odometry and in gusts: two modules dock, morph and separate.
 #include "deploy/experiments/chain_flight.hpp"
+#include "deploy/experiments/report/plots.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -18,17 +19,19 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   flight.assemble();
   Recorder& recorder = flight.recorder();
   std::vector<double> marks;
+  Figures out;
+  out.stills.push_back(flight.pilot().still("Docked"));
   recorder.start();
   for (const double bend : {bend_rad, 0.0}) {
     marks.push_back(flight.simulation().elapsed_s());
     flight.morph(flight.bow(bend, bend / 2));
+    if (bend > 0) out.stills.push_back(flight.pilot().still("Bent"));
     flight.pilot().wait(pause_s);
   }
   const FlightFigures f = recorder.figures();
   recorder.stop();
   flight.pilot().separate();
 
-  Figures out;
   out.series = recorder.series();
   out.series["mark_s"] = marks;
   out.metrics = {{"docking_s", flight.pilot().docking_s_max()},
@@ -48,6 +51,7 @@ const Experiment forest_experiment{.name = "forest",
                                    .has_trials = false,
                                    .breaks = {},
                                    .run_trial = &run_trial,
-                                   .summarise = &only_trial};
+                                   .summarise = &only_trial,
+                                   .plots = &morph_plots};
 
 }  // namespace eciton::deploy

@@ -1,6 +1,7 @@
 // morph: modules dock one by one, the chain bends in three dimensions and straightens, and separates one by one.
 // Fig. 4 of LEGION.
 #include "deploy/experiments/chain_flight.hpp"
+#include "deploy/experiments/report/plots.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -16,24 +17,28 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   broken.simulation.module.control.law_sign = config.break_what == "wrong-sign" ? -1 : 1;
   ChainFlight flight(broken, trial, modules);
   std::vector<double> marks;
+  Figures out;
+  const auto keep = [&](const char* title) { out.stills.push_back(flight.pilot().still(title)); };
   const auto mark = [&] { marks.push_back(flight.simulation().elapsed_s()); };
   flight.assemble();
   const bool assembled = flight.pilot().members(flight.first()).size() == flight.size() &&
                          flight.simulation().world().latched_links() + 1 == static_cast<int>(flight.size());
 
+  keep("Docked one by one: a straight chain");
   flight.recorder().start();
   mark();
   for (const auto& [yaw, pitch] : {std::pair{yaw_rad, 0.0}, {yaw_rad, pitch_rad}, {0.0, 0.0}}) {
     flight.morph(flight.bow(yaw, pitch));
     mark();
+    if (yaw != 0) keep(pitch == 0 ? "Bent in the plane" : "Bent in three dimensions");
     flight.pilot().wait(pause_s);
   }
   const FlightFigures f = flight.recorder().figures();
   flight.recorder().stop();
   flight.pilot().separate();
   flight.pilot().wait(pause_s);
+  keep("Separated");
 
-  Figures out;
   out.series = flight.recorder().series();
   out.series["mark_s"] = marks;
   out.metrics = {{"contact_force_N_mean", f.contact_force_N_mean},
@@ -59,6 +64,7 @@ const Experiment morph_experiment{.name = "morph",
                                   .has_trials = false,
                                   .breaks = {"no-zeroing", "wrong-sign"},
                                   .run_trial = &run_trial,
-                                  .summarise = &only_trial};
+                                  .summarise = &only_trial,
+                                  .plots = &morph_plots};
 
 }  // namespace eciton::deploy

@@ -98,9 +98,10 @@ Figures finish(const Worker& worker) {
 Figures only_trial(const std::vector<Figures>& trials) { return trials.front(); }
 
 const std::vector<Experiment>& experiments() {
-  static const std::vector<Experiment> all{
-      hover_experiment,   tracking_experiment, docking_experiment, morph_experiment,    ablation_experiment,
-      scaling_experiment, wind_experiment,     silence_experiment, crossing_experiment, forest_experiment};
+  static const std::vector<Experiment> all{hover_experiment,    tracking_experiment, docking_experiment,
+                                           morph_experiment,    ablation_experiment, scaling_experiment,
+                                           wind_experiment,     release_experiment,  silence_experiment,
+                                           crossing_experiment, forest_experiment};
   return all;
 }
 

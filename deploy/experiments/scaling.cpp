@@ -10,6 +10,7 @@
 #include "deploy/experiments/branch.hpp"
 #include "deploy/experiments/chain_flight.hpp"
 #include "deploy/experiments/path_reference.hpp"
+#include "deploy/experiments/report/plots.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -184,6 +185,7 @@ const Experiment scaling_experiment{.name = "scaling",
                                     .runs = &runs,
                                     .breaks = {},
                                     .run_trial = &run_trial,
-                                    .summarise = &summarise};
+                                    .summarise = &summarise,
+                                    .plots = &scaling_plots};
 
 }  // namespace eciton::deploy

@@ -6,6 +6,7 @@
 #include "core/robot/arrays.hpp"
 #include "deploy/experiments/chain_flight.hpp"
 #include "deploy/experiments/path_reference.hpp"
+#include "deploy/experiments/report/plots.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -52,6 +53,7 @@ const Experiment tracking_experiment{.name = "tracking",
                                      .has_trials = false,
                                      .breaks = {},
                                      .run_trial = &run_trial,
-                                     .summarise = &only_trial};
+                                     .summarise = &only_trial,
+                                     .plots = &tracking_plots};
 
 }  // namespace eciton::deploy

@@ -10,9 +10,10 @@
 namespace eciton::hal::sim {
 
 /// The one constant of the side-by-side wakes: standard deviation per axis, N, of the force on a module
-/// 1 m from one neighbour at hover thrust; it falls with the square of the distance. To be calibrated once,
-/// so that the papers' own law at N=3 shows 0.2-0.3 N of mean contact force, then frozen.
-inline constexpr double wake_force_N_at_1m = 0.10;
+/// 1 m from one neighbour at hover thrust; it falls with the square of the distance. Calibrated once, so that the
+/// paper's own law at N=3 shows the paper's 0.2-0.3 N of mean contact force (and its 0.05 Nm), then frozen:
+/// docs/decisions/0013.
+inline constexpr double wake_force_N_at_1m = 0.115;
 inline constexpr double wake_time_s = 0.3;
 inline constexpr double gust_time_s = 1.0;
 

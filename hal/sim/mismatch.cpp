@@ -21,7 +21,7 @@ Matrix3 inertia(const Matrix3& S) { return S.trace() * Matrix3::Identity() - S; 
 
 }  // namespace
 
-Mismatch draw_mismatch(const robot::Airframe& airframe, Random random) {
+Mismatch draw_mismatch(const robot::Airframe& airframe, Random random, bool full_joint_offset) {
   Mismatch m;
   for (double& scale : m.thrust_scale) scale = random.uniform(0.95, 1.05);
   m.mass_scale = random.uniform(0.97, 1.03);
@@ -34,7 +34,10 @@ Mismatch draw_mismatch(const robot::Airframe& airframe, Random random) {
   m.p_B_com_m = random.uniform3(-com_m, com_m);
   const Vector3 direction = random.normal3().normalized();
   m.attitude_bias_rad = random.uniform(0, 0.010) * direction;
-  for (double& offset : m.joint_offset_rad) offset = random.uniform(-0.020, 0.020);
+  for (double& offset : m.joint_offset_rad) {
+    offset = random.uniform(-0.020, 0.020);
+    if (full_joint_offset) offset = std::copysign(0.020, offset);
+  }
   return m;
 }
 

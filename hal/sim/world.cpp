@@ -83,7 +83,8 @@ World::Impl::Impl(const WorldConfig& config_in, const robot::Airframe& airframe_
   std::vector<Mismatch> mismatch(starts.size());
   if (config.world != "ideal") {
     for (std::size_t i = 0; i < starts.size(); ++i) {
-      mismatch[i] = draw_mismatch(airframe, Random(config.seed, starts[i].id, Purpose::mismatch));
+      mismatch[i] =
+          draw_mismatch(airframe, Random(config.seed, starts[i].id, Purpose::mismatch), config.full_joint_offset);
     }
   }
   world = value_or_throw(build_model(config, airframe, starts, mismatch));

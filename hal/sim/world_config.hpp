@@ -119,6 +119,7 @@ struct WorldConfig {
   std::uint64_t seed = 1;
   std::uint64_t start_ns = 0;      // the world's time when it begins
   std::string world = "honest";    // ideal: model parameters equal the controllers' (for debugging)
+  bool full_joint_offset = false;  // honest: joints' offsets all at their bound
   bool wakes = true;               // rotor wakes push neighbours
   double gust_N = 0;               // standard deviation per horizontal axis, half of it vertical
   std::array<double, 3> wind_N{};  // constant force on every module
@@ -140,6 +141,7 @@ struct WorldConfig {
     v("seed", seed);
     v("start_ns", start_ns);
     v("world", world, one_of({"honest", "ideal"}));
+    v("full_joint_offset", full_joint_offset);
     v("wakes", wakes);
     v("gust_N", gust_N, in_range(0, 20));
     v("wind_N", wind_N);

@@ -337,6 +337,7 @@ void ControlService::write_rotors(TimePoint now) noexcept {
                             .mass_kg = airframe_.mass_kg,
                             .I_M_kg_m2 = robot::composite_inertia(airframe_, joint_angles()),
                             .feed_forward_W = feed_forward_W,
+                            .integrate = integrates(),
                             .force_saturated = allocation_.force_scale < 1 || allocation_.thrust_limited,
                             .moment_saturated = allocation_.moment_scale < 1},
                            dt_s);

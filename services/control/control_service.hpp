@@ -31,6 +31,7 @@ struct ControlConfig {
   double paper_gain = 0.4;     // of the paper's law: gamma at N = 2, halved for each further member
   double paper_rate_Hz = 10;   // and how often it is applied
   double local_rate_1_s = 14;  // of the local law, by the number of members; at most a third of the observer's gain
+  bool integrate_all = false;  // in a chain every member's pose integral runs, as in the paper; else the base's alone
   double stiffness = 0;        // of the pose control in a chain: 0 gentle, 1 as stiff as in free flight
   double law_sign = 1;         // -1: an experiment's control, which must fail
   bool disturbance_feedback = true;  // the observer's wrench fed back in free flight
@@ -50,6 +51,7 @@ struct ControlConfig {
     v("paper_gain", paper_gain, in_range(0.001, 1));
     v("paper_rate_Hz", paper_rate_Hz, in_range(1, 100));
     v("local_rate_1_s", local_rate_1_s, in_range(0.1, 100));
+    v("integrate_all", integrate_all);
     v("stiffness", stiffness, in_range(0, 1));
     v("disturbance_feedback", disturbance_feedback);
     v("takeoff_m_s", takeoff_m_s, in_range(0.05, 2));
@@ -135,6 +137,9 @@ class ControlService final : public runtime::Service {
   const msg::DockingState& docking_now() const;
   static bool is_docking(const msg::DockingState& state);
   bool in_chain() const { return reference_.in_chain(); }
+  /// In a chain the base holds the place, and whoever sees it a little elsewhere gives way: integrals that disagree
+  /// would pull against each other for ever.
+  bool integrates() const { return config_.integrate_all || !in_chain() || view_.base_id == config_.module_id; }
   bool is_member(std::uint32_t module_id) const;
   void answer(msg::GoalKind kind, std::uint64_t correlation_id, msg::GoalPhase phase, std::string_view reason,
               TimePoint now) noexcept;

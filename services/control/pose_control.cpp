@@ -79,8 +79,10 @@ Wrench PoseControl::update(const PoseControlInput& in, double dt_s) {
   const Vector3 e_R = shortened(robot::log_so3(R_MD), config_.attitude_error_rad_max);
   const Vector3 w_d = R_MD * in.reference.w_WM_M;
   const Vector3 e_w = w_d - w;
-  integrate(integral_m_s2_, gains_.ki_1_s3, e_r, dt_s, config_.integral_m_s2_max, in.force_saturated);
-  integrate(integral_rad_s2_, gains_.ai_1_s3, e_R, dt_s, config_.integral_rad_s2_max, in.moment_saturated);
+  if (in.integrate) {
+    integrate(integral_m_s2_, gains_.ki_1_s3, e_r, dt_s, config_.integral_m_s2_max, in.force_saturated);
+    integrate(integral_rad_s2_, gains_.ai_1_s3, e_R, dt_s, config_.integral_rad_s2_max, in.moment_saturated);
+  }
 
   const Vector3 correction =
       shortened(gains_.kp_1_s2.cwiseProduct(e_r) + gains_.kd_1_s.cwiseProduct(e_v), config_.correction_m_s2_max);

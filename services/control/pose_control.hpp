@@ -54,6 +54,7 @@ struct PoseControlInput {
   double mass_kg = 0;
   Matrix3 I_M_kg_m2 = Matrix3::Identity();  // about the composite centre of mass
   Wrench feed_forward_W;                    // about the composite centre of mass, world axes
+  bool integrate = true;                    // false: the integrals stay as they are
   bool force_saturated = false;             // of the last allocation: the integrals then grow no further
   bool moment_saturated = false;
 };

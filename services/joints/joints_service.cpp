@@ -24,6 +24,7 @@ JointsService::JointsService(bus::Participant& ring, const JointsConfig& config,
       morph_goal_(ring.create_reader(topics::morph_goal)),
       chain_view_(ring.create_reader(topics::chain_view)),
       joint_state_(ring.create_reader(topics::joint_state)),
+      contact_goal_(ring.create_reader(topics::contact_goal)),
       module_state_(ring.create_reader(topics::module_state)),
       docking_state_(ring.create_reader(topics::docking_state)),
       joint_command_(ring.create_writer(topics::joint_command)),
@@ -36,6 +37,10 @@ void JointsService::step(TimePoint now) noexcept {
   first_step_ = false;
   while (const auto state = module_state_.take()) {
     if (state->value.module_id == config_.module_id) R_WM_ = robot::rotation(state->value.q_WM);
+  }
+  while (const auto sample = contact_goal_.take()) {
+    const msg::ContactGoal& goal = sample->value;
+    if (contains(view_.members, goal.module_id)) loaded_epoch_ = goal.links.empty() ? 0 : goal.epoch;
   }
   take_joints(now);
   take_chain(now);
@@ -187,7 +192,7 @@ void JointsService::write(TimePoint now) noexcept {
   out.stamp_ns = to_ns(now);
   for (std::size_t k = 0; k < each; ++k) {
     const robot::ScalarMotion joint = trajectory_.at(place_ * each + k, seconds(now));
-    const double give_rad = in_link(k)
+    const double give_rad = gives_way(k)
                                 ? relief_[k].update(own_.joints[k].torque_Nm -
                                                         weight_torque_Nm(airframe_.joints[k], joint.position, R_WM_),
                                                     joint.velocity, dt_s)
@@ -201,8 +206,8 @@ void JointsService::write(TimePoint now) noexcept {
   }
 }
 
-bool JointsService::in_link(std::size_t joint) const {
-  if (!in_chain_) return false;
+bool JointsService::gives_way(std::size_t joint) const {
+  if (!in_chain_ || loaded_epoch_ == view_.active_epoch) return false;
   // The male port holds the next member, the female one the member before.
   return std::any_of(airframe_.ports.begin(), airframe_.ports.end(), [&](const robot::PortGeometry& port) {
     const bool linked = port.kind == robot::PortKind::male ? place_ + 1 < view_.members.size() : place_ > 0;

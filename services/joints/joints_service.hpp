@@ -46,10 +46,11 @@ class JointsService final : public runtime::Service {
   template <class Self, class V>
   static void visit_state(Self& self, V& v) {
     v(self.last_step_, self.epoch_, self.trajectory_, self.place_, self.measured_, self.in_chain_, self.view_,
-      self.goal_, self.goal_pending_, self.answered_, self.relief_);
+      self.goal_, self.goal_pending_, self.answered_, self.relief_, self.loaded_epoch_);
   }
 
-  bool in_link(std::size_t joint) const;
+  /// In a link that shall carry nothing: where contact wrenches are asked for, the joint holds them.
+  bool gives_way(std::size_t joint) const;
   double seconds(TimePoint t) const { return to_s(t - epoch_); }
   void begin(TimePoint now) noexcept;
   void take_joints(TimePoint now) noexcept;
@@ -76,6 +77,7 @@ class JointsService final : public runtime::Service {
   msg::JointState own_;
   robot::Matrix3 R_WM_ = robot::Matrix3::Identity();
   std::array<JointRelief, robot::joints_max> relief_;
+  std::uint64_t loaded_epoch_ = 0;  // of the chain whose contact goal asks for contact wrenches
   msg::MorphGoal goal_;
   bool goal_pending_ = false;
   std::uint64_t answered_ = 0;
@@ -85,6 +87,7 @@ class JointsService final : public runtime::Service {
   bus::Reader<msg::MorphGoal> morph_goal_;
   bus::Reader<msg::ChainView> chain_view_;
   bus::Reader<msg::JointState> joint_state_;
+  bus::Reader<msg::ContactGoal> contact_goal_;
   bus::Reader<msg::ModuleState> module_state_;
   bus::Reader<msg::DockingState> docking_state_;
   bus::Writer<msg::JointCommand> joint_command_;

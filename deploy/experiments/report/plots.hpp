@@ -16,10 +16,10 @@ std::vector<report::Plot> tracking_plots(const Figures& figures);
 std::vector<report::Plot> docking_plots(const Figures& figures);
 
 /// Fig. 4 B to E: time_s, contact_force_N_<link>[_estimated], contact_torque_Nm_<link>[_estimated],
-/// base_position_error_m, base_attitude_error_rad, joint_target_rad_<k>, joint_torque_Nm_<k>, mark_s (T1, T2, …).
+/// base_position_error_m, base_attitude_error_rad, joint_rad_<k>, joint_torque_Nm_<k>, mark_s (T1, T2, …).
 std::vector<report::Plot> morph_plots(const Figures& figures);
 
-/// Fig. S2 B to D: time_s, joint_target_rad, contact_force_N_<law>, contact_torque_Nm_<law>, [mark_s: T0].
+/// Fig. S2 B to D: time_s, joint_rad, contact_force_N_<law>, contact_torque_Nm_<law>, [mark_s: T0].
 std::vector<report::Plot> ablation_plots(const Figures& figures);
 
 /// Fig. S3: modules, position_error_m_<law>, attitude_error_rad_<law>, convergence_s_<law> (60 and more: none in 60

@@ -20,7 +20,7 @@ std::vector<report::Mark> start_of(const Figures& figures) {
   const auto& given = series_of(figures, "mark_s");
   if (!given.empty()) return {{given.front(), "T0"}};
   const auto& time_s = series_of(figures, "time_s");
-  const auto& target = series_of(figures, "joint_target_rad");
+  const auto& target = series_of(figures, "joint_rad");
   for (std::size_t i = 0; i < std::min(time_s.size(), target.size()); ++i) {
     if (std::abs(target[i] - target.front()) > 1e-6) return {{time_s[i], "T0"}};
   }
@@ -41,12 +41,11 @@ Plot by_law(const Figures& figures, const std::string& series, const std::string
 }  // namespace
 
 std::vector<Plot> ablation_plots(const Figures& figures) {
-  Plot target{
-      "joint_target_rad", "Target joint angle (Fig. S2 B)", "",
-      Lines{.x_label = "time, s",
-            .y_label = "joint target, rad",
-            .traces = {{.name = "", .x = series_of(figures, "time_s"), .y = series_of(figures, "joint_target_rad")}},
-            .marks = start_of(figures)}};
+  Plot target{"joint_rad", "Joint angle (Fig. S2 B)", "",
+              Lines{.x_label = "time, s",
+                    .y_label = "joint angle, rad",
+                    .traces = {{.name = "", .x = series_of(figures, "time_s"), .y = series_of(figures, "joint_rad")}},
+                    .marks = start_of(figures)}};
   return {
       std::move(target),
       by_law(figures, "contact_force_N", "Contact force between the modules (Fig. S2 C)", "contact force, N"),

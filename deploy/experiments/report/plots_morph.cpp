@@ -60,8 +60,8 @@ std::vector<Trace> numbered(const Figures& figures, const std::string& series, c
 std::vector<Plot> morph_plots(const Figures& figures) {
   const auto& time_s = series_of(figures, "time_s");
   const auto base = [&](const char* series) { return filtered("", time_s, series_of(figures, series)); };
-  Plot targets = over_time(figures, "joint_target_rad", "Target joint angles (Fig. 4 E)", "joint target, rad",
-                           numbered(figures, "joint_target_rad", "joint", false));
+  Plot targets = over_time(figures, "joint_rad", "Joint angles (Fig. 4 E)", "joint angle, rad",
+                           numbered(figures, "joint_rad", "joint", false));
   targets.note.clear();
   return {over_time(figures, "contact_force_N", "Contact forces between modules (Fig. 4 B, C)", "contact force, N",
                     links(figures, "contact_force_N"), {{0.3, "paper's mean 0.3"}}),

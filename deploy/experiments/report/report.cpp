@@ -49,6 +49,16 @@ Status write_file(const fs::path& path, const std::string& bytes) {
 
 }  // namespace
 
+std::string figures_markdown(const ReportInput& input) {
+  std::string text = "`" + input.command_line + "`\n\n| metric | the paper | bar | ours | |\n|---|---|---|---|---|\n";
+  for (const JudgedMetric& row : judge(input.experiment, input.conditions, input.metrics)) {
+    if (row.paper.empty() && row.bar.empty()) continue;
+    text += "| " + row.metric + " | " + (row.paper.empty() ? "–" : row.paper) + " | " +
+            (row.bar.empty() ? "–" : row.bar) + " | " + row.ours + " | " + to_text(row.verdict) + " |\n";
+  }
+  return text;
+}
+
 Status check_report_directory(const std::string& directory) {
   if (directory.empty()) return ok();
   if (Status made = make_directory(directory); !made) return made;
@@ -73,6 +83,7 @@ Result<std::string> write_report(const std::string& directory, const ReportInput
     const fs::path file = parts / ("still_" + std::to_string(i + 1) + ".png");
     if (Status status = write_file(file, input.pictures.pictures[i].png); !status) return status.error();
   }
+  if (Status status = write_file(parts / "figures.md", figures_markdown(input)); !status) return status.error();
   if (Status status = write_file(page, report_page(input)); !status) return status.error();
   return page.string();
 }

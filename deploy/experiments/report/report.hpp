@@ -29,8 +29,11 @@ std::string report_page(const ReportInput& input);
 /// Makes the directory and sees whether it takes files: before the work that is to be shown.
 Status check_report_directory(const std::string& directory);
 
-/// Writes DIR/NAME.html, DIR/NAME/<plot>.svg and DIR/NAME/still_<k>.png; the path of the page. The Error names the
-/// file and why it cannot be written.
+/// Ours beside the paper's figures and the bars, as a table in Markdown: of the metrics that either speaks of.
+std::string figures_markdown(const ReportInput& input);
+
+/// Writes DIR/NAME.html, DIR/NAME/figures.md, DIR/NAME/<plot>.svg and DIR/NAME/still_<k>.png; the path of the page.
+/// The Error names the file and why it cannot be written.
 Result<std::string> write_report(const std::string& directory, const ReportInput& input);
 
 }  // namespace eciton::deploy

@@ -67,7 +67,7 @@ TEST(PlotsTest, SeriesOfDifferentLengthsAreNoTrouble) {
   Figures odd;
   odd.series["time_s"] = {0, 1, 2};
   odd.series["success"] = {1, 1, 0, 1};
-  for (const char* name : {"position_error_m", "contact_force_N_1", "contact_force_N_local", "joint_target_rad",
+  for (const char* name : {"position_error_m", "contact_force_N_1", "contact_force_N_local", "joint_rad",
                            "convergence_s_local", "x_m", "y_m", "speed_m_s", "base_position_error_m"}) {
     odd.series[name] = {1, 2, 3, 4, 5};
   }

@@ -39,7 +39,7 @@ class NeighbourhoodTest : public ::testing::Test {
     docking.module_id = id;
     docking.peer_id = with;
     docking.phase = phase;
-    hood_.hear(docking);
+    hood_.hear(docking, now_);
   }
   std::size_t clear_of() { return hood_.keep_clear_of(here, distance_m, now_).size(); }
 
