@@ -59,7 +59,7 @@ Step observe() {
     in.mass_kg = 3.9;
     in.v_WM = {0.001 * (++n % 7), 0, 0};
     in.known_M = {{0, 0, 38.2}, {0.01, 0, 0}};
-    observer->update(in, 0.002);
+    if (!observer->update(in, 0.002)) return 0.0;
     return observer->wrench_W().force.x();
   };
 }

@@ -296,7 +296,9 @@ TEST_P(DockingSequenceTest, SaysHowFastAChainsReferenceMovesAndTurns) {
     ASSERT_LT((out.v_TF_reference - (now.p - before.p) / dt_s).norm(), 1e-6);
     const Vector3 turn = robot::log_so3(now.R * before.R.transpose());
     // But for the last bit of a turn, which is done at once.
-    if (turn.norm() > 1e-3) ASSERT_LT((out.w_TF_reference - turn / dt_s).norm(), 1e-3);
+    if (turn.norm() > 1e-3) {
+      ASSERT_LT((out.w_TF_reference - turn / dt_s).norm(), 1e-3);
+    }
     turned_rad += turn.norm();
     before = now;
   }
