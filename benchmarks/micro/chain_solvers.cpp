@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/robot/chain_disturbance.hpp"
+
 namespace eciton::bench {
 namespace {
 
@@ -36,17 +38,10 @@ Vector3 behind(Members members, std::size_t k) { return link(members, k) - membe
 /// External wrenches less what is common to all, about each member's own r.
 template <class Use>
 void for_each_d(Members members, Use&& use) {
-  const double share = 1 / static_cast<double>(members.size());
-  Vector3 mean_r = Vector3::Zero();
-  Wrench common;
-  for (const MemberWrench& m : members) {
-    mean_r += share * m.r_W;
-    common.force += share * m.external_W.force;
-  }
-  for (const MemberWrench& m : members) {
-    common.moment += share * (m.external_W.moment + (m.r_W - mean_r).cross(m.external_W.force - common.force));
-  }
-  for (std::size_t i = 0; i < members.size(); ++i) use(i, members[i].external_W - common);
+  const robot::ChainDisturbance common(members.size(), [&](std::size_t i) {
+    return robot::ChainLoad{members[i].external_W, members[i].r_W, 1};
+  });
+  for (std::size_t i = 0; i < members.size(); ++i) use(i, members[i].external_W - common.share(members[i].r_W));
 }
 
 /// A'd: row k of it is -X(P_k - r_k)' d_k + X(P_k - r_{k+1})' d_{k+1}.

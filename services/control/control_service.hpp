@@ -13,12 +13,12 @@
 #include "core/runtime/service.hpp"
 #include "idl/topics.hpp"
 #include "services/control/contact_wrench_law.hpp"
+#include "services/control/control_service_neighbourhood.hpp"
 #include "services/control/disturbance_feedback.hpp"
 #include "services/control/flight_mode.hpp"
 #include "services/control/flight_reference.hpp"
 #include "services/control/goal_checks.hpp"
 #include "services/control/hand_over.hpp"
-#include "services/control/neighbourhood.hpp"
 #include "services/control/pose_control.hpp"
 #include "services/control/separation.hpp"
 

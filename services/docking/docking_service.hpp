@@ -11,7 +11,7 @@
 #include "services/docking/chain_reference.hpp"
 #include "services/docking/dock_request.hpp"
 #include "services/docking/docking_sequence.hpp"
-#include "services/docking/heard_modules.hpp"
+#include "services/docking/docking_service_heard.hpp"
 #include "services/docking/membership_service.hpp"
 #include "services/docking/target_sequence.hpp"
 
@@ -79,7 +79,7 @@ class DockingService final : public runtime::Service {
     bool begun = false;
   };
 
-  // docking_goals.cpp
+  // docking_service_goals.cpp
   void take_goals(TimePoint now) noexcept;
   void dock(const msg::DockGoal& goal, TimePoint now) noexcept;
   void undock(const msg::DockGoal& goal, TimePoint now) noexcept;

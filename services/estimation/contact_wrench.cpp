@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/robot/common_disturbance.hpp"
+#include "core/robot/chain_disturbance.hpp"
 
 namespace eciton::estimation {
 
@@ -64,7 +64,7 @@ ChainWrench solve_contacts(std::span<const MemberWrench> members, std::span<Memb
   }
   if (weight < 1e-9) return out;
 
-  const robot::CommonDisturbance common(count, [&](std::size_t k) {
+  const robot::ChainDisturbance common(count, [&](std::size_t k) {
     return robot::ChainLoad{members[k].external_W, contacts[k].r_W, contacts[k].freshness};
   });
   out.mean_r_W = common.mean_r_W();

@@ -47,7 +47,7 @@ struct ContactWrenches : ChainWrench {
 /// Rule for silent members: a member's last wrench is held and its *difference from the common one* fades
 /// with its age, so that a silent member ends up as one that feels no contact, and what the others feel still
 /// adds up to nothing. With weights f_k (1 while fresh):
-///   D_k = the share of member k in the common disturbance of all f_k (W_k) (core/robot/common_disturbance.hpp),
+///   D_k = the share of member k in the common disturbance of all f_k (W_k) (core/robot/chain_disturbance.hpp),
 ///   d_k = f_k (W_k - D_k),         c_k = -X(r_mean - P_k) sum_{j<=k} X(r_j - r_mean) d_j.
 /// A member never heard of is one that is silent for ever: the others estimate among themselves, and what its links
 /// carry is a guess, marked by their freshness. (d is the same about any r_mean, so a guessed place does no harm.)

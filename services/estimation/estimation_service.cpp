@@ -1,4 +1,4 @@
-// take(); estimate; publish. What it publishes is made in estimation_publish.cpp.
+// take(); estimate; publish. What it publishes is made in estimation_service_publish.cpp.
 #include "services/estimation/estimation_service.hpp"
 
 #include <algorithm>

@@ -15,9 +15,9 @@ TEST(JointTrajectoryTest, MovesAllJointsTogetherAtTheDefaultRate) {
   JointTrajectory trajectory(airframe);
   trajectory.reset(std::array{0.0, 0.0, 0.0, 0.0}, 0);
   ASSERT_FALSE(trajectory.go(std::array{0.0, 0.0, 0.4, 0.8}, 0, 5, 5));
-  const double duration_s = 1.875 * 0.8 / 0.12;
+  const double duration_s = 1.875 * 0.8 / 0.06;
   EXPECT_NEAR(trajectory.end_s(), 5 + duration_s, 1e-9);
-  EXPECT_NEAR(trajectory.at(3, 5 + duration_s / 2).velocity, 0.12, 1e-12);
+  EXPECT_NEAR(trajectory.at(3, 5 + duration_s / 2).velocity, 0.06, 1e-12);
   EXPECT_NEAR(trajectory.at(2, 5 + duration_s / 2).position, 0.2, 1e-12);
   EXPECT_NEAR(trajectory.at(3, 100).position, 0.8, 1e-12);
   EXPECT_TRUE(trajectory.finished(100));

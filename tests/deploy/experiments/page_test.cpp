@@ -131,7 +131,7 @@ TEST(ReportFilesTest, ThePageAndEveryPartAreWritten) {
   EXPECT_EQ(*page, directory + "/morph.html");
   std::size_t files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(directory)) files += entry.is_regular_file();
-  EXPECT_EQ(files, 3u);  // page, one plot, one still
+  EXPECT_EQ(files, 4u);  // page, table, one plot, one still
   std::ifstream svg(directory + "/morph/contact_force_N.svg");
   EXPECT_TRUE(well_formed({std::istreambuf_iterator<char>(svg), {}}));
   EXPECT_EQ(fs::file_size(directory + "/morph/still_1.png"), 18u);

@@ -181,10 +181,10 @@ TEST(ContactWrenchLawTest, SilentPeersLetTheFeedForwardFade) {
   ContactWrenchLaw law;
   law.set_feed_forward({{2, 0, 0}, {0, 0, 0}});
   for (int k = 0; k < 100; ++k) law.update(silent, 0, {}, 0.01);
-  EXPECT_NEAR(law.feed_forward_W().force.x(), 2 * std::exp(-1), 1e-9);
+  EXPECT_NEAR(law.feed_forward_W().force.x(), 2 * std::exp(-0.2), 1e-9);
   silent[1].age_s = 0.1;  // late, but fresh enough
   for (int k = 0; k < 100; ++k) law.update(silent, 0, {}, 0.01);
-  EXPECT_NEAR(law.feed_forward_W().force.x(), 2 * std::exp(-1), 1e-9);
+  EXPECT_NEAR(law.feed_forward_W().force.x(), 2 * std::exp(-0.2), 1e-9);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Whom a module keeps its distance from: not those it is linked with, docks with or stood beside, but the others.
-#include "services/control/neighbourhood.hpp"
+#include "services/control/control_service_neighbourhood.hpp"
 
 #include <gtest/gtest.h>
 

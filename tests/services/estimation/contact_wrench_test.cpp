@@ -53,7 +53,8 @@ struct Chain {
     }
     for (std::size_t i = 0; i < n; ++i) {
       Wrench& W = members[i].external_W;
-      W = common;  // the same force and moment on each, at its own r
+      // A force on each, and a turn (the moment here, N/m) that pushes by the lever and twists by 0.2 m of it.
+      W = {common.force + common.moment.cross(members[i].r_W - mean), 0.04 * common.moment};
       if (i > 0) W += robot::shift(contacts[i - 1], members[i].port_to_last_W - members[i].r_W);
       if (i + 1 < n) W -= robot::shift(contacts[i], members[i].port_to_next_W - members[i].r_W);
     }
@@ -79,18 +80,23 @@ TEST(ContactWrenchTest, TwoMembersPushingInAWindByHand) {
 }
 
 /// (8) to (10) solved densely, with nothing of the code under test: unknown are the contact wrenches and the common
-/// disturbance, one wrench that each member feels about its own r. As many unknowns as equations. Returns c_1, c_2,
+/// disturbance: a force on each member, and a turn t about the mean of the r, which each feels as t x rho and 0.04 t.
+/// As many unknowns as equations. Returns c_1, c_2,
 /// ...
 std::vector<Vector6> dense_contacts(const std::vector<MemberWrench>& members) {
   const auto n = static_cast<Eigen::Index>(members.size());
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6 * n, 6 * n);
   Eigen::VectorXd W(6 * n);
+  Vector3 mean = Vector3::Zero();
+  for (const MemberWrench& m : members) mean += m.r_W / static_cast<double>(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const MemberWrench& m = members[static_cast<std::size_t>(i)];
     W.segment<6>(6 * i) = stacked(m.external_W);
     if (i > 0) A.block<6, 6>(6 * i, 6 * i - 6) = X(members[static_cast<std::size_t>(i - 1)].port_to_next_W - m.r_W);
     if (i + 1 < n) A.block<6, 6>(6 * i, 6 * i) = -X(m.port_to_next_W - m.r_W);
-    A.block<6, 6>(6 * i, 6 * n - 6).setIdentity();
+    A.block<3, 3>(6 * i, 6 * n - 6).setIdentity();
+    A.block<3, 3>(6 * i, 6 * n - 3) = -robot::skew(m.r_W - mean);
+    A.block<3, 3>(6 * i + 3, 6 * n - 3) = 0.04 * Eigen::Matrix3d::Identity();
   }
   const Eigen::VectorXd solution = A.colPivHouseholderQr().solve(W);
   EXPECT_LT((A * solution - W).norm(), 1e-10) << "every set of wrenches is explained exactly";

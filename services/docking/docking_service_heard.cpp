@@ -1,5 +1,5 @@
 // Samples to knowledge, and poses of any module's ports.
-#include "services/docking/heard_modules.hpp"
+#include "services/docking/docking_service_heard.hpp"
 
 #include <algorithm>
 

@@ -20,15 +20,16 @@ struct ChainLoad {
   double weight = 1;
 };
 
-class CommonDisturbance {
+class ChainDisturbance {
  public:
-  CommonDisturbance() = default;
+  ChainDisturbance() = default;
   /// Of `count` loads, `load(k)` each; nothing when all weights are zero. World axes. Real-time safe.
   template <class Load>
-  CommonDisturbance(std::size_t count, const Load& load, double lever_m = disturbance_lever_m) : lever_m_(lever_m) {
+  ChainDisturbance(std::size_t count, const Load& load, double lever_m = disturbance_lever_m) : lever_m_(lever_m) {
     double weight = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const ChainLoad one = load(k);
+      if (one.weight <= 0) continue;  // nothing of it is looked at
       weight += one.weight;
       mean_r_W_ += one.weight * one.r_W;
       force_W_ += one.weight * one.external_W.force;
@@ -45,6 +46,7 @@ class CommonDisturbance {
     Vector3 total = Vector3::Zero();
     for (std::size_t k = 0; k < count; ++k) {
       const ChainLoad one = load(k);
+      if (one.weight <= 0) continue;
       const Vector3 rho = one.r_W - mean_r_W_;
       inertia += one.weight * (rho.squaredNorm() * Matrix3::Identity() - rho * rho.transpose());
       total += one.weight * (one.external_W.moment + rho.cross(one.external_W.force));

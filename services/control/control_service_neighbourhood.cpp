@@ -1,5 +1,5 @@
 // Peers as they are heard.
-#include "services/control/neighbourhood.hpp"
+#include "services/control/control_service_neighbourhood.hpp"
 
 #include <algorithm>
 
