@@ -17,6 +17,7 @@ void SafeDescent::start(SafeManoeuvre manoeuvre, const Matrix3& R_WB, double ver
   feed_forward_W_ = feed_forward_W;
   vertical_speed_m_s_ = vertical_speed_m_s;
   elapsed_s_ = descending_s_ = at_least_s_ = 0;
+  force_share_ = 1;
 }
 
 Vector3 SafeDescent::attitude_error(const Matrix3& R_WB) const {
@@ -43,12 +44,16 @@ Wrench SafeDescent::update(const Matrix3& R_WB, const Vector3& w_WB_B_rad_s, con
   const bool descending = phase_ == SafePhase::descending;
   if (descending) descending_s_ += dt_s;
 
-  vertical_speed_m_s_ += ((R_WB * specific_force_B_m_s2).z() - gravity_m_s2) * dt_s;
+  const double rise_m_s2 = (R_WB * specific_force_B_m_s2).z() - gravity_m_s2;
+  vertical_speed_m_s_ += rise_m_s2 * dt_s;
+  // A jolt that the thrust does not explain is the ground: whatever the integral has drifted to, the fall is over.
+  if (descending && rise_m_s2 - (force_share_ - 1) * gravity_m_s2 > config_.ground_jolt_m_s2) vertical_speed_m_s_ = 0;
   vertical_speed_m_s_ = std::clamp(vertical_speed_m_s_, -3.0, 3.0);
   // The wanted speed comes in over a second, so that the thrust does not step.
   const double wanted = descending ? -config_.descent_m_s * std::min(1.0, descending_s_) : 0.0;
   const double share = 1 + config_.vertical_gain_1_s * (wanted - vertical_speed_m_s_) / gravity_m_s2;
   const double limited = std::clamp(share, config_.force_share_min, config_.force_share_max);
+  force_share_ = limited;
   // Standing on the ground, the integrated speed no longer follows the wanted one.
   const bool pressing = descending && descending_s_ > 1 && vertical_speed_m_s_ > wanted + 0.6 * config_.descent_m_s;
   at_least_s_ = pressing ? at_least_s_ + dt_s : 0;

@@ -22,6 +22,7 @@ struct SafeDescentConfig {
   double vertical_gain_1_s = 2.0;  // on the vertical speed integrated from the accelerometer
   double force_share_min = 0.8;    // of the weight
   double force_share_max = 1.15;
+  double ground_jolt_m_s2 = 5;     // upward, beyond what the thrust makes; gusts stay below 1
   double attitude_gain_1_s2 = 40;
   double rate_gain_1_s = 12;
   double attitude_error_rad_max = 0.3;  // larger errors are worked off at a bounded rate
@@ -61,6 +62,7 @@ class SafeDescent {
   double descending_s_ = 0;
   double at_least_s_ = 0;
   double vertical_speed_m_s_ = 0;
+  double force_share_ = 1;  // asked for last, of the weight
 };
 
 }  // namespace eciton::robot

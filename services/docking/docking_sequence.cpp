@@ -189,13 +189,16 @@ void DockingSequence::release(const DockingInputs& in) {
   const bool open = in.latch == LatchStatus::open && in.target_latch == LatchStatus::open;
   if (open && !in.view_active) {
     enter(DockingPhase::retreat);
+    out_.X_TF_reference = {out_.gap_m_commanded * outward_T(target_port_), robot::Matrix3::Identity()};
   } else if (in_phase_s_ > config_.release_time_out_s) {
     finish(Outcome::failed, Failure::latch_stuck);
   }
 }
 
 void DockingSequence::retreat(double dt_s) {
-  move_gap(dt_s, config_.retreat_gap_m, config_.retreat_speed_m_s);
+  // From rest: a step of the speed would be a step of the thrust.
+  move_gap(dt_s, config_.retreat_gap_m,
+           std::min(config_.retreat_speed_m_s, config_.retreat_acceleration_m_s2 * in_phase_s_));
   if (out_.gap_m_commanded < config_.retreat_gap_m) return;
   finish(pending_ == Failure::none ? Outcome::undocked : Outcome::failed, pending_);
 }

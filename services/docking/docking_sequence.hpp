@@ -42,6 +42,7 @@ struct DockingConfig {
   double view_time_out_s = 10;       // latched, but there is no view with both in it
 
   double release_time_out_s = 5;  // until both latches report open and the view has let go
+  double retreat_acceleration_m_s2 = 0.5;
   double retreat_speed_m_s = 0.2;
   double retreat_gap_m = 0.5;
 };

@@ -200,6 +200,8 @@ TEST_P(DockingSequenceTest, RetreatsWhenTheTargetIsLostMidApproach) {
   const DockingOutputs& out = step();
   EXPECT_EQ(out.phase, DockingPhase::retreat);
   EXPECT_FALSE(out.engage_latch);
+  EXPECT_LT(step().v_TF_reference.dot(outward_T(port)), 0.05) << "from rest";
+  run_for(0.5);
   EXPECT_NEAR(step().v_TF_reference.dot(outward_T(port)), 0.2, 1e-9);
   run_for(3);
   EXPECT_EQ(sequence.outputs().outcome, Outcome::failed);
@@ -260,7 +262,7 @@ TEST_P(DockingSequenceTest, UndocksOnceBothLatchesAndTheViewLetGo) {
   in.view_active = false;
   step();
   EXPECT_EQ(sequence.outputs().phase, DockingPhase::retreat);
-  run_for(0.5 / 0.2 + 0.05);
+  run_for(0.5 / 0.2 + 0.5 * 0.2 / 0.5 + 0.05);  // the way at full speed, and half of the time to get to it
   EXPECT_EQ(sequence.outputs().outcome, Outcome::undocked);
   EXPECT_NEAR(relation(in.X_TF, port).gap_m, 0.5, 1e-9);
 }
