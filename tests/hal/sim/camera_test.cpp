@@ -11,7 +11,7 @@
 namespace eciton::hal::sim {
 namespace {
 
-constexpr CameraConfig small{.width = 320, .height = 160};
+const CameraConfig small{.width = 320, .height = 160};
 
 /// Level, joints straight, rotors upright, side by side along x.
 std::vector<double> posture(std::initializer_list<robot::Vector3> places) {
