@@ -22,7 +22,7 @@ struct SafeDescentConfig {
   double vertical_gain_1_s = 2.0;  // on the vertical speed integrated from the accelerometer
   double force_share_min = 0.8;    // of the weight
   double force_share_max = 1.15;
-  double ground_jolt_m_s2 = 5;     // upward, beyond what the thrust makes; gusts stay below 1
+  double ground_jolt_m_s2 = 5;  // upward, beyond what the thrust makes; gusts stay below 1
   double attitude_gain_1_s2 = 40;
   double rate_gain_1_s = 12;
   double attitude_error_rad_max = 0.3;  // larger errors are worked off at a bounded rate

@@ -129,8 +129,8 @@ void print_services(const Watched& w) {
   }
   for (const auto& [service, heard] : w.ear->heartbeats()) {
     if (heard.beat.rejected == 0) continue;
-    std::printf("  %s refused %llu bad samples since its start: `eciton topic echo fault` says which\n", service.c_str(),
-                static_cast<unsigned long long>(heard.beat.rejected));
+    std::printf("  %s refused %llu bad samples since its start: `eciton topic echo fault` says which\n",
+                service.c_str(), static_cast<unsigned long long>(heard.beat.rejected));
   }
 }
 
