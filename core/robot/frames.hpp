@@ -61,6 +61,11 @@ inline Wrench shift(const Wrench& about_P, const Vector3& p_OP) {
   return {about_P.force, about_P.moment + p_OP.cross(about_P.force)};
 }
 
+/// The same wrench about the same point, from B's axes to A's.
+inline Wrench rotate(const Matrix3& R_AB, const Wrench& wrench_B) {
+  return {R_AB * wrench_B.force, R_AB * wrench_B.moment};
+}
+
 /// exp: rotation vector (rad) to rotation matrix; exact for any length.
 inline Matrix3 exp_so3(const Vector3& v) {
   const double angle = v.norm();

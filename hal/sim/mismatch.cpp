@@ -36,7 +36,7 @@ Mismatch draw_mismatch(const robot::Airframe& airframe, Random random, bool full
   m.attitude_bias_rad = random.uniform(0, 0.010) * direction;
   for (double& offset : m.joint_offset_rad) {
     offset = random.uniform(-0.020, 0.020);
-    if (full_joint_offset) offset = std::copysign(0.020, offset);
+    if (full_joint_offset) offset = 0.020;
   }
   return m;
 }

@@ -22,7 +22,7 @@ struct Mismatch {
 
 /// The preset "honest": thrust to 5 % per rotor, mass and inertia to 3 %, centre of mass to 3 % of the
 /// least radius of gyration, attitude bias to 10 mrad, joint offset to 20 mrad, all uniform.
-/// `full_joint_offset`: 20 mrad each, one way or the other.
+/// `full_joint_offset`: + 20 mrad each.
 Mismatch draw_mismatch(const robot::Airframe& airframe, Random random, bool full_joint_offset = false);
 
 /// Mass and inertia of a module's main body and its links, as the physics engine wants them.

@@ -119,7 +119,7 @@ struct WorldConfig {
   std::uint64_t seed = 1;
   std::uint64_t start_ns = 0;      // the world's time when it begins
   std::string world = "honest";    // ideal: model parameters equal the controllers' (for debugging)
-  bool full_joint_offset = false;  // honest: joints' offsets all at their bound
+  bool full_joint_offset = false;  // honest: joints' offsets all at their upper bound
   bool wakes = true;               // rotor wakes push neighbours
   double gust_N = 0;               // standard deviation per horizontal axis, half of it vertical
   std::array<double, 3> wind_N{};  // constant force on every module

@@ -222,8 +222,10 @@ void EstimationService::observe(TimePoint now) noexcept {
     spell(Device::output).refuse(Refusal::not_finite, to_ns(now));
     return;
   }
-  zero(std::clamp(dt_s, 0.0, observer_gap_s_max), now);
-  external_W_ = config_.zeroing ? zeroing_.bias().take_off(observer_.wrench_W(), R) : observer_.wrench_W();
+  const BiasJacobian jacobian_M = bias_jacobian(airframe_, rotors_.rotors(), c_B, R);
+  zero(jacobian_M, std::clamp(dt_s, 0.0, observer_gap_s_max), now);
+  external_W_ = observer_.wrench_W();
+  if (config_.zeroing) external_W_ -= robot::rotate(R, zeroing_.bias_M(jacobian_M));
 }
 
 void EstimationService::take_zero_requests(TimePoint now) noexcept {
@@ -242,7 +244,7 @@ void EstimationService::take_zero_requests(TimePoint now) noexcept {
   }
 }
 
-void EstimationService::zero(double dt_s, TimePoint now) noexcept {
+void EstimationService::zero(const BiasJacobian& jacobian_M, double dt_s, TimePoint now) noexcept {
   // By itself, in the first free hover; asked for again, anew. What a peer's touch interrupts begins again.
   const ZeroingPhase before = zeroing_.phase();
   if (not_free() != nullptr) {
@@ -257,7 +259,8 @@ void EstimationService::zero(double dt_s, TimePoint now) noexcept {
   const bool measuring = before == ZeroingPhase::measuring;
   if (wanted && (!measuring || zeroing_interrupted_)) zeroing_.start();
   zero_asked_ = zeroing_interrupted_ = false;
-  zeroing_.update(observer_.wrench_W(), estimate_.X_WB.R, state_.v_WM, estimate_.w_WB_B, dt_s);
+  const robot::Wrench wrench_M = robot::rotate(estimate_.X_WB.R.transpose(), observer_.wrench_W());
+  zeroing_.update(wrench_M, jacobian_M, state_.v_WM, estimate_.w_WB_B, dt_s);
   if (zeroing_.phase() != before) report_zeroing(before, now);
 }
 

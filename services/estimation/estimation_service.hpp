@@ -63,7 +63,7 @@ class EstimationService final : public runtime::Service {
   void watch_silence(TimePoint now) noexcept;
   void watch_bus(TimePoint now) noexcept;
   void observe(TimePoint now) noexcept;
-  void zero(double dt_s, TimePoint now) noexcept;
+  void zero(const BiasJacobian& jacobian_M, double dt_s, TimePoint now) noexcept;
   void publish_state(TimePoint now) noexcept;
   void publish_external_wrench(TimePoint now) noexcept;
   void publish_contact_wrench(TimePoint now) noexcept;

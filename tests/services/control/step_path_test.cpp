@@ -27,12 +27,15 @@ TEST(StepPathTest, EstimationAllocatesNothing) {
   if (!testing::AllocationGuard::available()) GTEST_SKIP();
   estimation::ErrorStateFilter filter;
   estimation::MomentumObserver observer;
-  estimation::Zeroing zeroing;
+  estimation::Zeroing zeroing(
+      {.duration_s = 0.5, .batch_s = 0.1, .samples_min = 100, .quality_N_max = 1e9, .quality_Nm_max = 1e9});
+  const robot::Airframe airframe = robot::legion();
+  const robot::ActuatorLag lag(airframe);
   std::array<estimation::MemberWrench, 16> members;
   for (estimation::MemberWrench& m : members) m.known = true;
   zeroing.start();
   testing::AllocationGuard guard;
-  double sum = 0;
+  double sum = 0, zero_N = 0;
   for (int k = 0; k < 300; ++k) {
     filter.update(estimation::ImuSample{k * 2'000'000ll, {0, 0, 9.81}, {0.1, 0, 0}});
     if (k % 10 == 9) {  // 60 ms late
@@ -41,10 +44,15 @@ TEST(StepPathTest, EstimationAllocatesNothing) {
     }
     const estimation::Estimate e = filter.estimate();
     EXPECT_TRUE(observer.update({4, Matrix3::Identity(), e.v_WB, e.w_WB_B, e.X_WB.R, {}}, 0.002));
-    zeroing.update(observer.wrench_W(), e.X_WB.R, e.v_WB, e.w_WB_B, 0.002);
+    const estimation::BiasJacobian jacobian_M =
+        estimation::bias_jacobian(airframe, lag.rotors(), Vector3::Zero(), e.X_WB.R);
+    zeroing.update(observer.wrench_W(), jacobian_M, e.v_WB, e.w_WB_B, 0.002);
+    zero_N += zeroing.bias_M(jacobian_M).force.norm();
     sum += estimation::contact_wrenches(members).members[0].contact_W.force.norm();
   }
   EXPECT_EQ(guard.framework(), 0u) << guard.describe();
+  EXPECT_EQ(zeroing.phase(), estimation::ZeroingPhase::done);
+  EXPECT_GT(zero_N, 0);
   EXPECT_EQ(sum, 0);
 }
 
