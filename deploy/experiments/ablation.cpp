@@ -24,7 +24,9 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   // which what is left uncontrolled shows sooner. Joints give way only where that is part of the law.
   control.integrate_all = true;
   control.stiffness = 1;
-  // Biases that make opposing integrals wind up: as large as they may be, so that every seed shows it.
+  // Biases that make opposing integrals wind up: as large as they may be, and the joints' on the side to which these
+  // bend, so that every seed shows it. On the other side they take from what grows: the torque without a law is then
+  // 0.07 Nm in the mildest of twelve seeds, where our law leaves 0.014 Nm.
   with_law.simulation.world.full_joint_offset = true;
   with_law.simulation.world.mocap.position_bias_m = 0.003;
   if (variant != "local") with_law.simulation.module.joints.relief.rate_1_s = 0;

@@ -31,6 +31,7 @@ ChainFlight::ChainFlight(const ExperimentConfig& config, std::uint32_t trial, st
 
 void ChainFlight::assemble() {
   pilot_->bring_to_hover(std::vector<double>(size(), chain_height_m));
+  if (size() > 1) pilot_->zero_leaning();
   pilot_->assemble();
   const robot::Vector3 p_W = robot::vector(pilot_->fleet().find(base())->state->p_WM_m);
   home_.p = {p_W.x(), p_W.y(), chain_height_m};

@@ -2,7 +2,10 @@
 #include "deploy/experiments/pilot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
+
+#include "core/robot/arrays.hpp"
 
 namespace eciton::deploy {
 namespace {
@@ -68,6 +71,25 @@ void Pilot::bring_to_hover(const std::vector<double>& heights_m) {
     return true;
   };
   wait_until(all_zeroed, 40);  // in strong gusts a measurement may have to begin again; docking says if it failed
+}
+
+void Pilot::zero_leaning() {
+  constexpr double lean_rad = 0.2, way_m = 0.1, speed_m_s = 0.06;
+  std::vector<std::uint64_t> goals;
+  for (std::size_t k = 0; k < simulation_.size(); ++k) {
+    const std::uint32_t id = simulation_.id(k);
+    const msg::ModuleState& state = *fleet().find(id)->state;
+    const robot::Vector3 p_W = robot::vector(state.p_WM_m);
+    const auto at = [&](const robot::Vector3& way, const robot::Vector3& lean) {
+      return msg::Waypoint{.p_WM_m = robot::array(p_W + way), .q_WM = robot::quaternion(robot::exp_so3(lean))};
+    };
+    const msg::Waypoint level = at(robot::Vector3::Zero(), robot::Vector3::Zero());
+    goals.push_back(operator_.fly_path(
+        id, std::array{at({way_m, 0, 0}, {0, lean_rad, 0}), level, at({0, way_m, 0}, {lean_rad, 0, 0}), level},
+        speed_m_s));
+    goals.push_back(operator_.zero(id));
+  }
+  expect_success(goals, 40);
 }
 
 GoalReport Pilot::dock(std::uint32_t follower, std::uint32_t target, double limit_s) {
