@@ -29,6 +29,7 @@ inline constexpr Topic<msg::ExternalWrench> external_wrench{"external_wrench", Q
                                                             1s};
 inline constexpr Topic<msg::ContactWrench> contact_wrench{"contact_wrench", QosClass::sensor, Scope::module, 50ms,
                                                           200ms};
+inline constexpr Topic<msg::ModelErrors> model_errors{"model_errors", QosClass::state, Scope::module};
 
 // Actuators
 inline constexpr Topic<msg::RotorCommand> rotor_command{"rotor_command", QosClass::sensor, Scope::module, 20ms, 50ms};
@@ -67,12 +68,12 @@ inline constexpr Topic<msg::TruthPose> truth_pose{"truth_pose", QosClass::sensor
 inline constexpr Topic<msg::TruthContact> truth_contact{"truth_contact", QosClass::sensor, Scope::module};
 
 inline constexpr auto all =
-    std::tuple{clock,          clock_ack,     imu,           pose_measurement,  module_state, external_wrench,
-               contact_wrench, rotor_command, rotor_state,   joint_command,     joint_state,  latch_command,
-               latch_state,    flight_goal,   path_goal,     morph_goal,        contact_goal, dock_goal,
-               mode_request,   goal_status,   docking_state, docking_reference, link_claim,   chain_view,
-               beacon,         module_info,   radio_state,   heartbeat,         event,        fault,
-               truth_pose,     truth_contact};
+    std::tuple{clock,          clock_ack,    imu,           pose_measurement, module_state,      external_wrench,
+               contact_wrench, model_errors, rotor_command, rotor_state,      joint_command,     joint_state,
+               latch_command,  latch_state,  flight_goal,   path_goal,        morph_goal,        contact_goal,
+               dock_goal,      mode_request, goal_status,   docking_state,    docking_reference, link_claim,
+               chain_view,     beacon,       module_info,   radio_state,      heartbeat,         event,
+               fault,          truth_pose,   truth_contact};
 
 /// Calls `visit(topic)` for each topic.
 template <class Visit>

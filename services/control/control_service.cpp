@@ -45,6 +45,7 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
       rotor_state_(ring.create_reader(topics::rotor_state)),
       external_wrench_(ring.create_reader(topics::external_wrench)),
       contact_wrench_(ring.create_reader(topics::contact_wrench)),
+      model_errors_(ring.create_reader(topics::model_errors)),
       chain_view_(ring.create_reader(topics::chain_view)),
       docking_state_(ring.create_reader(topics::docking_state)),
       beacon_(ring.create_reader(topics::beacon)),
@@ -223,7 +224,21 @@ void ControlService::see_base(TimePoint now) noexcept {
   if (in_chain()) reference_.see_base(X_WM_base_, seconds(now));
 }
 
+void ControlService::take_model_errors() noexcept {
+  while (const auto sample = model_errors_.take()) {
+    const msg::ModelErrors& m = sample->value;
+    if (m.module_id != config_.module_id || !config_.model_correction) continue;
+    errors_.setZero();
+    for (std::size_t k = 0; k < m.thrust_share.size(); ++k) errors_[static_cast<Eigen::Index>(k)] = m.thrust_share[k];
+    errors_[robot::error_mass] = m.mass_share;
+    errors_.segment<3>(robot::error_com) = robot::vector(m.com_B_m);
+    errors_.segment<3>(robot::error_attitude) = robot::vector(m.attitude_rad);
+    hand_over_.begin();  // the integrals held against it until now
+  }
+}
+
 void ControlService::take_wrenches(TimePoint now) noexcept {
+  take_model_errors();
   while (const auto sample = external_wrench_.take()) {
     const msg::ExternalWrench& w = sample->value;
     if (w.module_id != config_.module_id) continue;
@@ -329,7 +344,7 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   // A chain that docks, or is docked to, must hit a port as a module does: as stiff.
   const bool gentle = in_chain() && !is_docking(docking_now());
   pose_control_.set_gains(gentle ? between(gains_assembled(), gains_free(), config_.stiffness) : gains_free());
-  const robot::Wrench feed_forward_W = hand_over_.update(feed_forward(dt_s), dt_s);
+  const robot::Wrench feed_forward_W = hand_over_.update(feed_forward(dt_s) + correction(c_B), dt_s);
   flown_ = separated(now, dt_s);
   const robot::Wrench demanded_B =
       pose_control_.update({.state = motion_,
@@ -352,6 +367,12 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   for (const robot::RotorOutput& rotor : allocation_.outputs())
     out.rotors.push_back({rotor.thrust_N, rotor.gimbal_rad});
   rotor_command_.write(out);
+}
+
+/// Against the false wrench that the rotors make as they are now.
+robot::Wrench ControlService::correction(const robot::Vector3& c_B) const noexcept {
+  const robot::BiasJacobian jacobian_M = robot::bias_jacobian(airframe_, allocation_.outputs(), c_B, motion_.R_WM);
+  return -robot::rotate(motion_.R_WM, robot::false_wrench_M(jacobian_M, errors_));
 }
 
 robot::Wrench ControlService::feed_forward(double dt_s) noexcept {

@@ -10,6 +10,7 @@
 #include "core/bus/participant.hpp"
 #include "core/robot/allocation.hpp"
 #include "core/robot/kinematics.hpp"
+#include "core/robot/model_errors.hpp"
 #include "core/runtime/service.hpp"
 #include "idl/topics.hpp"
 #include "services/control/contact_wrench_law.hpp"
@@ -35,6 +36,7 @@ struct ControlConfig {
   double stiffness = 0;        // of the pose control in a chain: 0 gentle, 1 as stiff as in free flight
   double law_sign = 1;         // -1: an experiment's control, which must fail
   bool disturbance_feedback = true;  // the observer's wrench fed back in free flight
+  bool model_correction = true;      // what zeroing found to be false in the airframe's model is made up for
   double takeoff_m_s = 0.5;
   double landing_m_s = 0.3;
   double speed_m_s = 0.5;
@@ -54,6 +56,7 @@ struct ControlConfig {
     v("integrate_all", integrate_all);
     v("stiffness", stiffness, in_range(0, 1));
     v("disturbance_feedback", disturbance_feedback);
+    v("model_correction", model_correction);
     v("takeoff_m_s", takeoff_m_s, in_range(0.05, 2));
     v("landing_m_s", landing_m_s, in_range(0.05, 1));
     v("speed_m_s", speed_m_s, in_range(0.05, 2));
@@ -73,7 +76,7 @@ class ControlService final : public runtime::Service {
     return runtime::on(module_state_, from_s(config_.period_s), runtime::Phase::control);
   }
   void step(TimePoint now) noexcept override;
-  std::uint32_t state_version() const noexcept override { return 3; }
+  std::uint32_t state_version() const noexcept override { return 4; }
   void save_state(runtime::StateWriter& writer) const noexcept override { visit_state(*this, writer); }
   void load_state(runtime::StateReader& reader) noexcept override;
   void describe(msg::Heartbeat& heartbeat) const noexcept override { heartbeat.flight_mode = to_message(mode_); }
@@ -88,7 +91,7 @@ class ControlService final : public runtime::Service {
     v(self.mode_, self.reference_, self.separation_, self.flown_, self.pose_control_, self.law_, self.feedback_,
       self.allocator_, self.epoch_, self.last_step_, self.view_, self.goal_id_, self.goal_is_ours_,
       self.goal_pending_, self.contact_goal_now_, self.answered_mode_, self.answered_flight_, self.answered_morph_,
-      self.answered_contact_);
+      self.answered_contact_, self.errors_);
   }
 
   /// After a start: whether it is known what the rotors do and what follows from it.
@@ -175,12 +178,15 @@ class ControlService final : public runtime::Service {
   std::array<double, robot::joints_max> joint_rad_{};
   robot::Wrench external_W_;
   robot::Wrench common_W_;  // our share of what acts on the whole chain, weighed with the members that are fresh
-  robot::Pose X_WM_base_;   // where the base of the chain stands, smoothed
+  robot::ModelErrors errors_ = robot::ModelErrors::Zero();  // of the airframe, as estimation found them
+  robot::Pose X_WM_base_;                                   // where the base of the chain stands, smoothed
   bool duplicate_id_ = false;
   msg::DockingState docking_;
   msg::ChainView view_;  // the active one
   robot::Allocation allocation_;
 
+  void take_model_errors() noexcept;
+  robot::Wrench correction(const robot::Vector3& c_B) const noexcept;
   void take_contact_wrench(const msg::ContactWrench& w, TimePoint now) noexcept;
 
   Neighbourhood neighbourhood_;
@@ -197,6 +203,7 @@ class ControlService final : public runtime::Service {
   bus::Reader<msg::RotorState> rotor_state_;
   bus::Reader<msg::ExternalWrench> external_wrench_;
   bus::Reader<msg::ContactWrench> contact_wrench_;
+  bus::Reader<msg::ModelErrors> model_errors_;
   bus::Reader<msg::ChainView> chain_view_;
   bus::Reader<msg::DockingState> docking_state_;
   bus::Reader<msg::Beacon> beacon_;

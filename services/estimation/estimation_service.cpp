@@ -43,6 +43,7 @@ EstimationService::EstimationService(bus::Participant& ring, const EstimationCon
       module_state_(ring.create_writer(topics::module_state)),
       external_wrench_(ring.create_writer(topics::external_wrench)),
       contact_wrench_(ring.create_writer(topics::contact_wrench)),
+      model_errors_(ring.create_writer(topics::model_errors)),
       goal_status_(ring.create_writer(topics::goal_status)),
       event_(ring.create_writer(topics::event)),
       fault_(ring.create_writer(topics::fault)) {}
@@ -51,6 +52,7 @@ void EstimationService::load_state(runtime::StateReader& reader) noexcept { read
 
 void EstimationService::step(TimePoint now) noexcept {
   if (first_step_ && now - saved_at_ > runtime::resume_within) zeroing_ = Zeroing();
+  if (first_step_ && zeroing_.zeroed() && config_.zeroing) publish_model_errors(now);
   take_chain(now);
   take_zero_requests(now);
   take_actuators(now);
@@ -222,7 +224,7 @@ void EstimationService::observe(TimePoint now) noexcept {
     spell(Device::output).refuse(Refusal::not_finite, to_ns(now));
     return;
   }
-  const BiasJacobian jacobian_M = bias_jacobian(airframe_, rotors_.rotors(), c_B, R);
+  const robot::BiasJacobian jacobian_M = robot::bias_jacobian(airframe_, rotors_.rotors(), c_B, R);
   zero(jacobian_M, std::clamp(dt_s, 0.0, observer_gap_s_max), now);
   external_W_ = observer_.wrench_W();
   if (config_.zeroing) external_W_ -= robot::rotate(R, zeroing_.bias_M(jacobian_M));
@@ -244,7 +246,7 @@ void EstimationService::take_zero_requests(TimePoint now) noexcept {
   }
 }
 
-void EstimationService::zero(const BiasJacobian& jacobian_M, double dt_s, TimePoint now) noexcept {
+void EstimationService::zero(const robot::BiasJacobian& jacobian_M, double dt_s, TimePoint now) noexcept {
   // By itself, in the first free hover; asked for again, anew. What a peer's touch interrupts begins again.
   const ZeroingPhase before = zeroing_.phase();
   if (not_free() != nullptr) {

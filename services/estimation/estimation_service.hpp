@@ -63,7 +63,7 @@ class EstimationService final : public runtime::Service {
   void watch_silence(TimePoint now) noexcept;
   void watch_bus(TimePoint now) noexcept;
   void observe(TimePoint now) noexcept;
-  void zero(const BiasJacobian& jacobian_M, double dt_s, TimePoint now) noexcept;
+  void zero(const robot::BiasJacobian& jacobian_M, double dt_s, TimePoint now) noexcept;
   void publish_state(TimePoint now) noexcept;
   void publish_external_wrench(TimePoint now) noexcept;
   void publish_contact_wrench(TimePoint now) noexcept;
@@ -71,6 +71,7 @@ class EstimationService final : public runtime::Service {
   const char* not_free() const;
   std::span<const double> joint_angles() const { return std::span(joint_rad_).first(airframe_.joints.size()); }
   void report_mode(TimePoint now) noexcept;
+  void publish_model_errors(TimePoint now) noexcept;
   void report_zeroing(ZeroingPhase before, TimePoint now) noexcept;
   void report_refusals(TimePoint now) noexcept;
   void answer_zero(std::uint64_t correlation_id, msg::GoalPhase phase, std::string_view reason,
@@ -132,6 +133,7 @@ class EstimationService final : public runtime::Service {
   bus::Writer<msg::ModuleState> module_state_;
   bus::Writer<msg::ExternalWrench> external_wrench_;
   bus::Writer<msg::ContactWrench> contact_wrench_;
+  bus::Writer<msg::ModelErrors> model_errors_;
   bus::Writer<msg::GoalStatus> goal_status_;
   bus::Writer<msg::Event> event_;
   bus::Writer<msg::Fault> fault_;

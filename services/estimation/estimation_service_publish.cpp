@@ -146,6 +146,18 @@ void EstimationService::answer_zero(std::uint64_t correlation_id, msg::GoalPhase
   if (zero_goal_ == correlation_id) zero_goal_ = 0;
 }
 
+void EstimationService::publish_model_errors(TimePoint now) noexcept {
+  const robot::ModelErrors& errors = zeroing_.errors();
+  msg::ModelErrors out{.module_id = config_.module_id, .stamp_ns = to_ns(now)};
+  for (std::size_t k = 0; k < airframe_.rotors.size(); ++k) {
+    out.thrust_share.push_back(errors[static_cast<Eigen::Index>(k)]);
+  }
+  out.mass_share = errors[robot::error_mass];
+  out.com_B_m = robot::array(errors.segment<3>(robot::error_com));
+  out.attitude_rad = robot::array(errors.segment<3>(robot::error_attitude));
+  model_errors_.write(out);
+}
+
 void EstimationService::report_zeroing(ZeroingPhase before, TimePoint now) noexcept {
   const ZeroingPhase phase = zeroing_.phase();
   msg::Event out{
@@ -160,6 +172,7 @@ void EstimationService::report_zeroing(ZeroingPhase before, TimePoint now) noexc
   }
   out.detail = static_cast<const char*>(detail);
   event_.write(out);
+  if (phase == ZeroingPhase::done && config_.zeroing) publish_model_errors(now);
   if (zero_goal_ == 0) return;
   if (phase == ZeroingPhase::done) answer_zero(zero_goal_, msg::GoalPhase::succeeded, "", now);
   if (phase == ZeroingPhase::refused) answer_zero(zero_goal_, msg::GoalPhase::aborted, zeroing_.reason(), now);

@@ -39,14 +39,14 @@ void Zeroing::close_batch() {
 
 /// errors = (P^-1 + sum H^T R^-1 H)^-1 sum H^T R^-1 y, in units of the errors' own spreads.
 void Zeroing::fit(double batch_std_N, double batch_std_Nm) {
-  const ModelErrors std = config_.tolerance.std();
+  const robot::ModelErrors std = config_.tolerance.std();
   Vector6 weight;
   weight << robot::Vector3::Constant(1 / batch_std_N), robot::Vector3::Constant(1 / batch_std_Nm);
-  Eigen::Matrix<double, model_errors, model_errors> information;
+  Eigen::Matrix<double, robot::model_error_count, robot::model_error_count> information;
   information.setIdentity();
-  ModelErrors sum = ModelErrors::Zero();
+  robot::ModelErrors sum = robot::ModelErrors::Zero();
   for (std::size_t k = 0; k < batch_count_; ++k) {
-    const BiasJacobian H = weight.asDiagonal() * batches_[k].jacobian_M * std.asDiagonal();
+    const robot::BiasJacobian H = weight.asDiagonal() * batches_[k].jacobian_M * std.asDiagonal();
     information.noalias() += H.transpose() * H;
     sum.noalias() += H.transpose() * weight.cwiseProduct(batches_[k].wrench_M);
   }
@@ -67,7 +67,7 @@ void Zeroing::finish() {
     phase_ = ZeroingPhase::refused;
     return;
   }
-  const ModelErrors before = errors_;
+  const robot::ModelErrors before = errors_;
   fit(config_.batch_std_N_min, config_.batch_std_Nm_min);
   const Vector6 first = spread();
   fit(std::max(config_.batch_std_N_min, first.head<3>().maxCoeff()),
@@ -85,7 +85,7 @@ void Zeroing::finish() {
   phase_ = ZeroingPhase::done;
 }
 
-ZeroingPhase Zeroing::update(const robot::Wrench& wrench_M, const BiasJacobian& jacobian_M,
+ZeroingPhase Zeroing::update(const robot::Wrench& wrench_M, const robot::BiasJacobian& jacobian_M,
                              const robot::Vector3& v_WM, const robot::Vector3& w_WM_M, double dt_s) {
   if (phase_ != ZeroingPhase::measuring) return phase_;
   since_start_s_ += dt_s;
@@ -108,11 +108,6 @@ ZeroingPhase Zeroing::update(const robot::Wrench& wrench_M, const BiasJacobian& 
   if (batch_s_ >= config_.batch_s - 1e-9) close_batch();
   if (measured_s_ >= config_.duration_s - 1e-9) finish();
   return phase_;
-}
-
-robot::Wrench Zeroing::bias_M(const BiasJacobian& jacobian_M) const {
-  const Vector6 bias = jacobian_M * errors_;
-  return {bias.head<3>(), bias.tail<3>()};
 }
 
 }  // namespace eciton::estimation

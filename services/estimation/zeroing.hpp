@@ -8,7 +8,7 @@
 #include <array>
 
 #include "core/robot/frames.hpp"
-#include "services/estimation/wrench_bias.hpp"
+#include "core/robot/model_errors.hpp"
 
 namespace eciton::estimation {
 
@@ -21,8 +21,8 @@ struct ZeroingConfig {
   double timeout_s = 30;       // of being measured anew again and again
   double quality_N_max = 1.5;  // worse: refused
   double quality_Nm_max = 0.3;
-  ModelTolerance tolerance{};     // before anything is measured
-  double batch_std_N_min = 0.05;  // of a batch's mean, by noise and gusts; more when the batches differ by more
+  robot::ModelTolerance tolerance{};  // before anything is measured
+  double batch_std_N_min = 0.05;      // of a batch's mean, by noise and gusts; more when the batches differ by more
   double batch_std_Nm_min = 0.005;
 };
 
@@ -37,15 +37,18 @@ class Zeroing {
   /// Begins to measure; the last zero stays in force until the new one is done.
   void start();
   /// One observer output (M's axes, about the composite centre of mass) with the state it belongs to.
-  ZeroingPhase update(const robot::Wrench& wrench_M, const BiasJacobian& jacobian_M, const robot::Vector3& v_WM,
-                      const robot::Vector3& w_WM_M, double dt_s);
+  ZeroingPhase update(const robot::Wrench& wrench_M, const robot::BiasJacobian& jacobian_M,
+                      const robot::Vector3& v_WM, const robot::Vector3& w_WM_M, double dt_s);
 
   ZeroingPhase phase() const { return phase_; }
   /// Why it was refused; a static string.
   const char* reason() const { return reason_; }
   bool zeroed() const { return zeroed_; }
   /// What the errors found make of the observer's output, in M's axes.
-  robot::Wrench bias_M(const BiasJacobian& jacobian_M) const;
+  robot::Wrench bias_M(const robot::BiasJacobian& jacobian_M) const {
+    return robot::false_wrench_M(jacobian_M, errors_);
+  }
+  const robot::ModelErrors& errors() const { return errors_; }
   /// Standard deviation of the bias itself, from the spread of the batches; the worst axis.
   double quality_N() const { return quality_N_; }
   double quality_Nm() const { return quality_Nm_; }
@@ -70,14 +73,14 @@ class Zeroing {
   ZeroingPhase phase_ = ZeroingPhase::idle;
   const char* reason_ = "";
   bool zeroed_ = false;
-  ModelErrors errors_ = ModelErrors::Zero();
+  robot::ModelErrors errors_ = robot::ModelErrors::Zero();
   double quality_N_ = 0, quality_Nm_ = 0;
   int interruptions_ = 0;
   double since_start_s_ = 0, measured_s_ = 0, batch_s_ = 0;
   int samples_ = 0, batch_samples_ = 0;
   struct Batch {
     robot::Vector6 wrench_M = robot::Vector6::Zero();  // sums, then means
-    BiasJacobian jacobian_M = BiasJacobian::Zero();
+    robot::BiasJacobian jacobian_M = robot::BiasJacobian::Zero();
   };
   Batch batch_;
   std::array<Batch, batches_max> batches_;

@@ -44,8 +44,7 @@ TEST(StepPathTest, EstimationAllocatesNothing) {
     }
     const estimation::Estimate e = filter.estimate();
     EXPECT_TRUE(observer.update({4, Matrix3::Identity(), e.v_WB, e.w_WB_B, e.X_WB.R, {}}, 0.002));
-    const estimation::BiasJacobian jacobian_M =
-        estimation::bias_jacobian(airframe, lag.rotors(), Vector3::Zero(), e.X_WB.R);
+    const robot::BiasJacobian jacobian_M = robot::bias_jacobian(airframe, lag.rotors(), Vector3::Zero(), e.X_WB.R);
     zeroing.update(observer.wrench_W(), jacobian_M, e.v_WB, e.w_WB_B, 0.002);
     zero_N += zeroing.bias_M(jacobian_M).force.norm();
     sum += estimation::contact_wrenches(members).members[0].contact_W.force.norm();

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "services/estimation/wrench_bias.hpp"
+#include "core/robot/model_errors.hpp"
 
 namespace eciton::estimation {
 
@@ -16,7 +16,7 @@ struct TrueModel {
   robot::Vector3 com_m = robot::Vector3::Zero();
   robot::Vector3 attitude_rad = robot::Vector3::Zero();  // measured = true Exp(attitude)
 
-  static TrueModel of(const ModelErrors& errors) {
+  static TrueModel of(const robot::ModelErrors& errors) {
     TrueModel out;
     for (std::size_t k = 0; k < robot::rotors_max; ++k) out.thrust_share[k] = errors[static_cast<int>(k)];
     const int after = static_cast<int>(robot::rotors_max);
@@ -39,7 +39,7 @@ struct TrueModel {
 
 struct Reading {
   robot::Wrench observed_M;
-  BiasJacobian jacobian_M;
+  robot::BiasJacobian jacobian_M;
 };
 
 class HangingModule {
@@ -79,7 +79,7 @@ class HangingModule {
     const robot::Vector3 model_weight_M =
         measured_R_WM.transpose() * robot::Vector3(0, 0, -airframe.mass_kg * robot::gravity_m_s2);
     return {{-known.head<3>() - model_weight_M, -known.tail<3>()},
-            bias_jacobian(airframe, rotors, robot::Vector3::Zero(), measured_R_WM)};
+            robot::bias_jacobian(airframe, rotors, robot::Vector3::Zero(), measured_R_WM)};
   }
 
  private:

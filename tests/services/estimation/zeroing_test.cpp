@@ -18,11 +18,11 @@ using robot::Vector3;
 constexpr double dt = 0.002;
 
 /// Of a module that hovers level.
-BiasJacobian hovering() {
+robot::BiasJacobian hovering() {
   const robot::Airframe airframe = robot::legion();
-  return bias_jacobian(airframe, robot::ActuatorLag(airframe).rotors(), Vector3::Zero(), Matrix3::Identity());
+  return robot::bias_jacobian(airframe, robot::ActuatorLag(airframe).rotors(), Vector3::Zero(), Matrix3::Identity());
 }
-const BiasJacobian level = hovering();
+const robot::BiasJacobian level = hovering();
 
 TEST(ZeroingTest, FindsTheBiasWithTheQualityItClaims) {
   // Ornstein-Uhlenbeck noise of 0.3 N and 0.15 s, as the observer makes it: the mean over 6 s spreads by

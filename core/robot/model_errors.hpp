@@ -1,6 +1,6 @@
-// What the wrench observer reads in free hover, explained by what is false in the airframe's model: rotors that push
-// harder or softer than they should, mass, centre of mass, and the attitude that the pose sensor gives. Each turns
-// with the module in its own way, so the zero still holds once the chain has bent, where a constant one does not.
+// What is false in an airframe's model, and what wrench that looks like: rotors that push harder or softer than they
+// should, mass, centre of mass, and the attitude that the pose sensor gives. A module in hover is pushed by this
+// false wrench, an observer reads it, and it turns with the module as each error does.
 //
 // To first order, in hover, with f_j the thrusts and tau_j their moments about the composite centre of mass as the
 // model has them, f their sum, all in M:
@@ -17,13 +17,14 @@
 #include "core/robot/airframe.hpp"
 #include "core/robot/allocation.hpp"
 
-namespace eciton::estimation {
+namespace eciton::robot {
 
 /// delta_j for every rotor there may be, mu, c (m), b (rad).
-inline constexpr int model_errors = static_cast<int>(robot::rotors_max) + 7;
-using ModelErrors = Eigen::Matrix<double, model_errors, 1>;
+inline constexpr int error_mass = static_cast<int>(rotors_max), error_com = error_mass + 1,
+                     error_attitude = error_com + 3, model_error_count = error_attitude + 3;
+using ModelErrors = Eigen::Matrix<double, model_error_count, 1>;
 /// False wrench in M (force, N; moment about the composite centre of mass, Nm) per model error.
-using BiasJacobian = Eigen::Matrix<double, 6, model_errors>;
+using BiasJacobian = Eigen::Matrix<double, 6, model_error_count>;
 
 /// One standard deviation of each error, of a module that was built and weighed with usual care.
 struct ModelTolerance {
@@ -36,7 +37,9 @@ struct ModelTolerance {
 };
 
 /// `rotors`: what the model says they do now. Real-time safe.
-BiasJacobian bias_jacobian(const robot::Airframe& airframe, std::span<const robot::RotorOutput> rotors,
-                           const robot::Vector3& com_offset_B, const robot::Matrix3& R_WM);
+BiasJacobian bias_jacobian(const Airframe& airframe, std::span<const RotorOutput> rotors, const Vector3& com_offset_B,
+                           const Matrix3& R_WM);
 
-}  // namespace eciton::estimation
+Wrench false_wrench_M(const BiasJacobian& jacobian_M, const ModelErrors& errors);
+
+}  // namespace eciton::robot

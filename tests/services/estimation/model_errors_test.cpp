@@ -1,7 +1,7 @@
 // The model of the zero against hover worked out without linearising: a module whose rotors, mass, centre of mass and
 // attitude sensor differ from the model by known amounts hangs in balance; what an observer by momentum then reads is
 // what the model's own wrench lacks.
-#include "services/estimation/wrench_bias.hpp"
+#include "core/robot/model_errors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ Matrix3 rolled(double rad) { return robot::exp_so3({rad, 0, 0}); }
 /// As a member of a bent chain: turned and pitched.
 const Matrix3 bent = robot::exp_so3({0, 0, 0.8}) * pitched(0.8);
 
-TEST(WrenchBiasTest, TellsWhatEachErrorReadsAs) {
+TEST(ModelErrorsTest, TellsWhatEachErrorReadsAs) {
   // By hand, level: 1 % more mass pulls down by 0.01 m g; the centre of mass 1 mm forward pitches by m g 1 mm, nose
   // down (+y); a sensor that shows 1 mrad too much roll (+x) sees the thrust, which is vertical, leaned to -y, and
   // the module does not go there: a force to +y.
@@ -61,12 +61,12 @@ TEST(WrenchBiasTest, TellsWhatEachErrorReadsAs) {
   EXPECT_NEAR(roll.read(level).observed_M.force.y(), 0.001 * weight_N, 1e-6);
 }
 
-TEST(WrenchBiasTest, IsTheFirstOrderOfTheTruth) {
+TEST(ModelErrorsTest, IsTheFirstOrderOfTheTruth) {
   // Every error alone, small, in a bent attitude: the Jacobian's column to a thousandth.
-  for (int error = 0; error < model_errors; ++error) {
+  for (int error = 0; error < robot::model_error_count; ++error) {
     const bool rotor = error < static_cast<int>(robot::rotors_max);
     if (rotor && error >= static_cast<int>(robot::legion().rotors.size())) continue;
-    ModelErrors errors = ModelErrors::Zero();
+    robot::ModelErrors errors = robot::ModelErrors::Zero();
     errors[error] = 1e-5;
     const Reading reading = HangingModule(TrueModel::of(errors)).read(bent);
     const robot::Vector6 predicted = reading.jacobian_M * errors;
@@ -77,7 +77,7 @@ TEST(WrenchBiasTest, IsTheFirstOrderOfTheTruth) {
   }
 }
 
-TEST(WrenchBiasTest, AZeroOfLevelHoverHoldsInABentChain) {
+TEST(ModelErrorsTest, AZeroOfLevelHoverHoldsInABentChain) {
   // Errors as large as the mismatch draws them. What a level hover cannot tell is left: the height of the centre of
   // mass, and the sensor's error in yaw. The control that must fail is a constant zero: force in W, moment in M.
   std::mt19937 rng(5);
@@ -95,10 +95,10 @@ TEST(WrenchBiasTest, AZeroOfLevelHoverHoldsInABentChain) {
     by_tilting = both(by_tilting, left_at(module, tilted, bent));
   }
          by_tilting.force_N, by_tilting.moment_Nm);
-  EXPECT_LT(by_model.force_N, 0.6 * by_constant.force_N);
-  EXPECT_LT(by_model.moment_Nm, 0.5 * by_constant.moment_Nm);
-  EXPECT_LT(by_tilting.force_N, 0.5 * by_model.force_N);
-  EXPECT_LT(by_tilting.moment_Nm, 0.5 * by_model.moment_Nm);
+         EXPECT_LT(by_model.force_N, 0.6 * by_constant.force_N);
+         EXPECT_LT(by_model.moment_Nm, 0.5 * by_constant.moment_Nm);
+         EXPECT_LT(by_tilting.force_N, 0.5 * by_model.force_N);
+         EXPECT_LT(by_tilting.moment_Nm, 0.5 * by_model.moment_Nm);
 }
 
 }  // namespace
