@@ -28,8 +28,9 @@ std::vector<ChainLoad> shares(const std::vector<ChainLoad>& loads, const ChainDi
 }
 
 TEST(ChainDisturbanceTest, AWindIsTheSameForceOnEach) {
-  const std::vector<ChainLoad> loads{
-      {{{4, 0, 0}, {}}, {0, 0, 1}}, {{{4, 0, 0}, {}}, {-1, 0, 1}}, {{{4, 0, 0}, {}}, {-2, 1, 1}}};
+  const std::vector<ChainLoad> loads{{{{4, 0, 0}, Vector3::Zero()}, {0, 0, 1}},
+                                     {{{4, 0, 0}, Vector3::Zero()}, {-1, 0, 1}},
+                                     {{{4, 0, 0}, Vector3::Zero()}, {-2, 1, 1}}};
   const ChainDisturbance wind = of(loads);
   for (const ChainLoad& one : loads) {
     EXPECT_LT((wind.share(one.r_W).force - Vector3(4, 0, 0)).norm(), 1e-12);
@@ -40,7 +41,8 @@ TEST(ChainDisturbanceTest, AWindIsTheSameForceOnEach) {
 TEST(ChainDisturbanceTest, ATurningWindOfTwoByHand) {
   // Members at x = +1 and -1 m; 1 N along y on the first, -1 N on the second: a moment of 2 Nm about z. With a lever
   // l, t = 2 / (2 l^2 + 2 1^2) about z: F = t x rho = t along y on the first, M = l^2 t each.
-  const std::vector<ChainLoad> loads{{{{0, 1, 0}, {}}, {1, 0, 0}}, {{{0, -1, 0}, {}}, {-1, 0, 0}}};
+  const std::vector<ChainLoad> loads{{{{0, 1, 0}, Vector3::Zero()}, {1, 0, 0}},
+                                     {{{0, -1, 0}, Vector3::Zero()}, {-1, 0, 0}}};
   for (const double lever_m : {0.2, 0.5, 1.0}) {
     const double t = 2 / (2 * lever_m * lever_m + 2);
     const Wrench share = of(loads, lever_m).share(loads[0].r_W);
@@ -74,7 +76,8 @@ TEST(ChainDisturbanceTest, ContactBetweenMembersIsNoDisturbance) {
 
 TEST(ChainDisturbanceTest, WhoDoesNotCountIsNotLookedAt) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<ChainLoad> loads{{{{1, 0, 0}, {}}, {0, 0, 0}}, {{{nan, 0, 0}, {}}, {nan, 0, 0}, 0}};
+  std::vector<ChainLoad> loads{{{{1, 0, 0}, Vector3::Zero()}, {0, 0, 0}},
+                               {{{nan, 0, 0}, Vector3::Zero()}, {nan, 0, 0}, 0}};
   EXPECT_LT((of(loads).share({5, 0, 0}).force - Vector3(1, 0, 0)).norm(), 1e-12);
   loads[0].weight = 0;
   EXPECT_EQ(of(loads).share({5, 0, 0}).force.norm(), 0);
