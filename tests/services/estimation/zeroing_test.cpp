@@ -81,7 +81,7 @@ TEST(ZeroingTest, RefusesWhatIsTooUnsteadyOrTooSparse) {
   zeroing.start();
   for (int k = 0; k < 3100; ++k) {
     const double swell = 12 * std::sin(k * dt * 0.8);
-    zeroing.update({{swell, 0, 0}, {}}, level, Vector3::Zero(), Vector3::Zero(), dt);
+    zeroing.update({{swell, 0, 0}, Vector3::Zero()}, level, Vector3::Zero(), Vector3::Zero(), dt);
   }
   EXPECT_EQ(zeroing.phase(), ZeroingPhase::refused);
   EXPECT_FALSE(zeroing.zeroed());
