@@ -20,6 +20,9 @@
 #ifndef LATE
 #define LATE 0      /* announcements kept on the way */
 #endif
+#ifndef LINKED
+#define LINKED 0    /* at first, and agreed: 1: males of 0, 2 in the next one; 2: every male in the next one */
+#endif
 #ifndef ROUNDS
 #define ROUNDS 3    /* without loss, after which all agree */
 #endif
@@ -62,7 +65,7 @@ bool past[N * N];                         /* heard something newer than that */
 hidden byte version[REGISTERS];
 hidden byte members[N];
 hidden byte inside[N];
-hidden byte count, at, i, k, r, other, said_level, turn;
+hidden byte count, at, who, whom, i, k, r, other, said_level, turn;
 hidden int epoch, said;
 hidden byte ring, ready, fresh, one_active, spoke, same;
 
@@ -360,7 +363,6 @@ inline settle() {
     }
   }
 }
-hidden byte who, whom;
 
 #define SETTLED(m) (!live[m] || (spoken[MALE(m)] && spoken[FEMALE(m)] && KNOWN(m, MALE(m)) == latest[MALE(m)] && \
   CONTENT(MALE(m), latest[MALE(m)]) == (mate[m] == NONE -> 0 : mate[m] + 1) && \
@@ -406,8 +408,16 @@ proctype Module(byte me) {
   od
 }
 
+/* Modules are alike: it makes no difference which of them dock first. */
+#if LINKED == 0
+#define FIRST(a, b) (docks > 0 || (a == 0 && b == 1))
+#elif LINKED == 1 && N == 4
+#define FIRST(a, b) (docks > 0 || undocks > 0 || crashes > 0 || (a == 1 && b == 2))
+#else
+#define FIRST(a, b) true
+#endif
 #define DOCK(a, b) \
-  :: d_step { !quiet && docks < DOCKS && a != b && (docks > 0 || (a == 0 && b == 1)) && live[a] && live[b] && mate[a] == NONE && FREE(b) && \
+  :: d_step { !quiet && docks < DOCKS && a != b && FIRST(a, b) && live[a] && live[b] && mate[a] == NONE && FREE(b) && \
               SETTLED(a) && SETTLED(b) -> mate[a] = b; docks++; skip }
 #define UNDOCK(a) \
   :: d_step { !quiet && undocks < UNDOCKS && mate[a] != NONE && SETTLED(a) && SETTLED(mate[a]) -> \
