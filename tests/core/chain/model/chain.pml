@@ -433,12 +433,24 @@ proctype Module(byte me) {
 
 active proctype World() {
   d_step {
-    for (at : 0 .. N - 1) { mate[at] = NONE; live[at] = true; flies[at] = true; holds[at] = true }
     for (r : 0 .. REGISTERS - 1) {
-      latest[r] = 1; spoken[r] = true;
+      latest[r] = 1; spoken[r] = true; version[r] = 1;
       for (at : 0 .. N - 1) { KNOWN(at, r) = 1 }
     }
-    at = 0; skip };
+    for (at : 0 .. N - 1) {
+      mate[at] = NONE; live[at] = true; flies[at] = true; holds[at] = true;
+      if
+      :: at < N - 1 && (LINKED == 2 || (LINKED == 1 && at % 2 == 0)) ->
+        mate[at] = at + 1; CONTENT(MALE(at), 1) = at + 2; CONTENT(FEMALE(at + 1), 1) = at + 1
+      :: else
+      fi
+    }
+    for (who : 0 .. N - 1) {
+      arrange(who); take_epoch();
+      held[who] = epoch; flown[who] = epoch; started[who] = epoch != 0
+    }
+    skip
+  };
   atomic { run Module(0); run Module(1); run Module(2);
 #if N > 3
     run Module(3);
