@@ -23,6 +23,9 @@
 #ifndef LINKED
 #define LINKED 0    /* at first, and agreed: 1: males of 0, 2 in the next one; 2: every male in the next one */
 #endif
+#ifndef FEWER
+#define FEWER 0     /* 1: fewer runs: nobody seems silent who is not, and what is said of another epoch is lost */
+#endif
 #ifndef ROUNDS
 #define ROUNDS 3    /* without loss, after which all agree */
 #endif
@@ -53,7 +56,7 @@ byte birth[REGISTERS];                    /* version last written before its own
 byte known[N * REGISTERS];
 
 /* Agreement. Level: 1 proposed, 2 with a start, 3 active. */
-bool holds[N], flies[N], started[N];
+bool holds[N], flies[N], started[N], decides[N];
 int held[N], flown[N];
 int heard[N * N];                         /* epoch */
 byte level[N * N];
@@ -115,7 +118,8 @@ inline take_epoch() {
     :: else
     fi;
     if
-    :: inside[i] && version[FEMALE(i)] != 0 && CONTENT(FEMALE(i), version[FEMALE(i)]) != 0 && !inside[PEER_OF_FEMALE(i)] ->
+    :: inside[i] && version[FEMALE(i)] != 0 && CONTENT(FEMALE(i), version[FEMALE(i)]) != 0 &&
+       !inside[PEER_OF_FEMALE(i)] ->
       r = MALE(PEER_OF_FEMALE(i)); epoch = epoch | (version[r] << (3 * r))
     :: else
     fi
@@ -147,7 +151,7 @@ inline forget_heard(j, m) {
   :: flies[j] && said == flown[j] -> said = 0
   :: else ->
     if
-    :: holds[j] && said == held[j] && started[j] && said_level < 3 -> said = 0
+    :: holds[j] && said == held[j] && said_level < (started[j] -> 3 : (decides[j] -> 1 : 2)) -> said = 0
     :: else ->
       for (r : 0 .. REGISTERS - 1) {
         if
@@ -226,9 +230,14 @@ inline update(j, seems_fresh, come) {
     for (r : 0 .. REGISTERS - 1) { version[r] = KNOWN(j, r) }
     arrange(j);
     if
-    :: ring -> holds[j] = false; held[j] = 0; started[j] = false
+    :: ring -> holds[j] = false; held[j] = 0; started[j] = false; decides[j] = false
     :: else ->
       take_epoch();
+#ifdef MUTATION_ALL_DECIDE
+      decides[j] = epoch != 0;
+#else
+      decides[j] = epoch != 0 && members[(count + 1) / 2 - 1] == j;
+#endif
       if
       :: !holds[j] || held[j] != epoch -> holds[j] = true; held[j] = epoch; started[j] = false
       :: else
@@ -259,7 +268,7 @@ inline update(j, seems_fresh, come) {
             fi
           }
           if
-          :: !started[j] && members[(count + 1) / 2 - 1] == j && ready && fresh ->
+          :: !started[j] && decides[j] && ready && fresh ->
             watch_decision(j);
             started[j] = true
           :: else
@@ -318,7 +327,7 @@ inline hear(j, m) {
 }
 
 inline stop(m) {
-  live[m] = false; holds[m] = false; flies[m] = false; started[m] = false; held[m] = 0; flown[m] = 0;
+  live[m] = false; holds[m] = false; flies[m] = false; started[m] = false; decides[m] = false; held[m] = 0; flown[m] = 0;
   spoken[MALE(m)] = false; spoken[FEMALE(m)] = false;
   birth[MALE(m)] = latest[MALE(m)]; birth[FEMALE(m)] = latest[FEMALE(m)];
   for (i : 0 .. N - 1) { heard[AT(m, i)] = 0; level[AT(m, i)] = 0; past[AT(m, i)] = false;}
@@ -379,7 +388,7 @@ inline settle() {
 #endif
 #define HEAR_CLAIMS(r0) HEAR_CLAIM(r0, 1) HEAR_CLAIM(r0, 2) HEAR_CLAIM(r0, 3) HEAR_CLAIM(r0, 4) HEAR_CLAIM(r0, 5)
 #define HEAR(m) \
-  :: d_step { !quiet && live[me] && live[m] && m != me -> hear(me, m); skip }
+  :: d_step { !quiet && live[me] && live[m] && m != me && (!FEWER || held[m] == held[me]) -> hear(me, m); skip }
 #define HEAR_LATE(m) \
   :: d_step { !quiet && live[me] && m != me && late_level[m] != 0 && !past[AT(me, m)] -> \
     heard[AT(me, m)] = late_epoch[m]; level[AT(me, m)] = late_level[m]; forget_heard(me, m); skip }
@@ -390,7 +399,9 @@ proctype Module(byte me) {
   :: d_step { !quiet && live[me] -> claim(FEMALE(me)); skip }
   :: d_step { !quiet && live[me] -> update(me, true, true); forget(me); skip }
   :: d_step { !quiet && live[me] -> update(me, true, false); forget(me); skip }
+#if FEWER == 0
   :: d_step { !quiet && live[me] -> update(me, false, true); forget(me); skip }
+#endif
   HEAR_CLAIMS(0) HEAR_CLAIMS(1) HEAR_CLAIMS(2) HEAR_CLAIMS(3) HEAR_CLAIMS(4) HEAR_CLAIMS(5)
 #if N > 3
   HEAR_CLAIMS(6) HEAR_CLAIMS(7)
@@ -447,7 +458,8 @@ active proctype World() {
     }
     for (who : 0 .. N - 1) {
       arrange(who); take_epoch();
-      held[who] = epoch; flown[who] = epoch; started[who] = epoch != 0
+      held[who] = epoch; flown[who] = epoch; started[who] = epoch != 0;
+      decides[who] = epoch != 0 && members[(count + 1) / 2 - 1] == who
     }
     skip
   };
@@ -484,7 +496,7 @@ active proctype World() {
       for (r : 0 .. N * N - 1) { heard[r] = 0; level[r] = 0; past[r] = false;}
       for (r : 0 .. N - 1) {
         mate[r] = 0; live[r] = false; silent[r] = false; holds[r] = false; flies[r] = false; started[r] = false;
-        held[r] = 0; flown[r] = 0; late_epoch[r] = 0; late_level[r] = 0
+        held[r] = 0; flown[r] = 0; decides[r] = false; late_epoch[r] = 0; late_level[r] = 0
       }
       docks = 0; undocks = 0; crashes = 0; late = 0; skip }
   od
