@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t modules = 3;
 constexpr double wind_N = 4;
-constexpr double window_s = 20, transient_s = 8;
+constexpr double window_s = 60, transient_s = 8;  // means of what wakes do need so long to be of a tenth of the bar
 
 Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   ChainFlight flight(config, trial, modules);

@@ -21,8 +21,8 @@ struct ApproachPathConfig {
   double port_to_body_m = 0.4;  // from the docking point to the centre of a body, both modules
 
   // Of a chain: it is heavier, softer, and its far end moves by the rate of turning times its length.
-  double chain_speed_m_s = 0.4;
-  double chain_acceleration_m_s2 = 0.5;
+  double chain_speed_m_s = 0.55;
+  double chain_acceleration_m_s2 = 1.0;
   double swing_m_s = 0.3;  // of the far end
   double swing_m_s2 = 0.4;
   double swing_free_rad = 0.15;  // to turn by more than this, a chain needs room for all of it

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <vector>
 
 namespace eciton::chain {
@@ -43,6 +44,13 @@ class AgreementTest : public testing::Test {
     ++sequence_number;
     tell_all({male, 0, female, 1, false, LatchStatus::latched, 1, sequence_number});
     tell_all({female, 1, male, 0, false, LatchStatus::latched, 1, sequence_number});
+  }
+  void restart(std::uint32_t id, std::uint64_t incarnation) {
+    Module& m = module(id);
+    std::destroy_at(&m.agreement);
+    std::construct_at(&m.agreement, AgreementConfig{.module = id, .incarnation = incarnation}, rule);
+    m.claims = {};
+    m.announcements = {};
   }
   void update(std::uint32_t id) {
     Module& m = module(id);
@@ -265,6 +273,55 @@ TEST_F(AgreementTest, KeepsTheActiveViewWhenTheLinksCloseToARing) {
   EXPECT_EQ(active_epoch(1), pair);
   EXPECT_EQ(module(1).agreement.obstacle(), Obstacle::structure_refused);
   EXPECT_EQ(module(1).agreement.refusal(), Refusal::ring);
+}
+
+TEST_F(AgreementTest, TakesNothingFromAModuleThatComesBackAsItsOldIncarnation) {
+  create(3);
+  round();
+  link(1, 2);
+  for (int k = 0; k < 20; ++k) round();
+  const std::uint64_t pair = active_epoch(1);
+  ASSERT_NE(pair, 0u);
+  // 2 comes back counting from the start under the same incarnation: its words are older than what stands.
+  restart(2, 1);
+  for (std::uint32_t port = 0; port < 2; ++port) tell_all({.module = 2, .port = port, .incarnation = 1});
+  for (int k = 0; k < 50; ++k) round();
+  EXPECT_EQ(active_epoch(1), pair) << "an old word undid a link";
+  EXPECT_EQ(module(1).agreement.held()->epoch, pair);
+  EXPECT_EQ(active_epoch(2), 0u);
+  EXPECT_EQ(module(1).claims.find(2, 1)->sequence_number, sequence_number);
+  // As a new one it is believed, and agrees anew once it has spoken for both ports.
+  restart(2, 2);
+  module(2).claims.join(module(1).claims);
+  tell_all({.module = 2, .port = 0, .incarnation = 2, .sequence_number = 1});
+  for (int k = 0; k < 20; ++k) round();
+  EXPECT_FALSE(module(2).agreement.active());
+  EXPECT_EQ(active_epoch(1), pair);
+  tell_all({2, 1, 1, 0, false, LatchStatus::latched, 2, 2});
+  for (int k = 0; k < 20; ++k) round();
+  EXPECT_NE(active_epoch(1), pair);
+  EXPECT_EQ(module(1).agreement.active(), module(2).agreement.active());
+  EXPECT_EQ(module(1).agreement.active()->members.size(), 2u);
+}
+
+TEST_F(AgreementTest, FliesNoLinkThatOneLatchContradicts) {
+  create(3);
+  round();
+  link(1, 2);
+  for (int k = 0; k < 20; ++k) round();
+  const std::uint64_t pair = active_epoch(1);
+  // 3 claims the port that 1 is in, and one that is open: neither latch bears it out.
+  tell_all({3, 0, 2, 1, false, LatchStatus::latched, 1, 1});
+  tell_all({3, 1, 2, 0, false, LatchStatus::latched, 1, 2});
+  for (int k = 0; k < 20; ++k) round();
+  EXPECT_EQ(active_epoch(1), pair);
+  EXPECT_EQ(active_epoch(2), pair);
+  EXPECT_EQ(active_epoch(3), 0u);
+  // A claim whose own latch is not closed holds nothing, whatever it names.
+  tell_all({2, 0, 3, 1, false, LatchStatus::ready, 1, 50});
+  for (int k = 0; k < 20; ++k) round();
+  EXPECT_EQ(module(2).agreement.active()->members.size(), 2u);
+  EXPECT_EQ(active_epoch(3), 0u);
 }
 
 TEST_F(AgreementTest, AnnouncesOnlyWhatChanged) {

@@ -3,14 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
-#include <set>
 
 #include "core/chain/view.hpp"
+#include "tests/core/chain/lattice_rule.hpp"
 
 namespace eciton::chain {
 namespace {
+
+using test::LatticeRule;
 
 void link(ClaimTable& claims, Link l, std::uint64_t sequence_number = 1, std::uint64_t incarnation = 1) {
   claims.join({l.module, l.port, l.peer, l.peer_port, false, LatchStatus::latched, incarnation, sequence_number});
@@ -73,37 +74,6 @@ TEST(ChainRuleTest, RefusesPortsThatDoNotFit) {
   link(lattice_port, {1, 0, 2, 3});
   EXPECT_EQ(view_of(1, lattice_port, build_link_graph(lattice_port), ChainRule(), view), Refusal::forbidden_ports);
 }
-
-/// Test only: ports 0..3 look to +x, +y, -x, -y; opposite ports link; members are ordered row by row.
-class LatticeRule : public StructureRule {
- public:
-  Refusal arrange(std::span<const std::uint32_t> members, std::span<const Link> links,
-                  Structure& structure) const override {
-    std::map<std::uint32_t, std::pair<int, int>> cell{{members[0], {0, 0}}};
-    for (std::size_t round = 0; round < members.size(); ++round) {
-      for (const Link& forward : links) {
-        for (const Link& l : {forward, forward.reversed()}) {
-          if ((l.port + 2) % 4 != l.peer_port) return Refusal::forbidden_ports;
-          if (cell.count(l.module) == 0) continue;
-          constexpr int dx[] = {1, 0, -1, 0}, dy[] = {0, 1, 0, -1};
-          const auto [x, y] = cell[l.module];
-          const std::pair to{x + dx[l.port], y + dy[l.port]};
-          if (!cell.emplace(l.peer, to).second && cell[l.peer] != to) return Refusal::inconsistent;
-        }
-      }
-    }
-    std::set<std::pair<int, int>> taken;
-    for (const auto& [module, at] : cell) {
-      if (!taken.insert(at).second) return Refusal::inconsistent;
-      structure.members.push_back(module);
-    }
-    std::sort(structure.members.begin(), structure.members.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair(cell[a].second, cell[a].first) < std::pair(cell[b].second, cell[b].first);
-    });
-    for (const Link& l : links) structure.links.push_back(l.port < 2 ? l : l.reversed());
-    return Refusal::none;
-  }
-};
 
 TEST(LatticeRuleTest, ArrangesASquareWhichIsNoRingThere) {
   ClaimTable claims;           // 4 3

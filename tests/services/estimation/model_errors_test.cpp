@@ -94,11 +94,10 @@ TEST(ModelErrorsTest, AZeroOfLevelHoverHoldsInABentChain) {
     const Zeroing tilted = zeroed_by(module, {level, pitched(0.2), pitched(-0.2), rolled(0.2), rolled(-0.2)});
     by_tilting = both(by_tilting, left_at(module, tilted, bent));
   }
-         by_tilting.force_N, by_tilting.moment_Nm);
-         EXPECT_LT(by_model.force_N, 0.6 * by_constant.force_N);
-         EXPECT_LT(by_model.moment_Nm, 0.5 * by_constant.moment_Nm);
-         EXPECT_LT(by_tilting.force_N, 0.5 * by_model.force_N);
-         EXPECT_LT(by_tilting.moment_Nm, 0.5 * by_model.moment_Nm);
+  EXPECT_LT(by_model.force_N, 0.6 * by_constant.force_N);
+  EXPECT_LT(by_model.moment_Nm, 0.5 * by_constant.moment_Nm);
+  EXPECT_LT(by_tilting.force_N, 0.5 * by_model.force_N);
+  EXPECT_LT(by_tilting.moment_Nm, 0.5 * by_model.moment_Nm);
 }
 
 }  // namespace
