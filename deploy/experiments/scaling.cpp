@@ -146,6 +146,9 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   ExperimentConfig still = config;
   still.simulation.world.wakes = false;
   still.simulation.module.control.law = "local";
+  // The same gains for all lengths: a chain of one flies as a member does.
+  control::ControlConfig& control = still.simulation.module.control;
+  if (modules_of(config, trial) == 1) control.stiffness_alone = control.stiffness;
   still.simulation.world.modules = row_about_the_base(modules_of(config, trial));
   ChainFlight flight(still, 0, modules_of(config, trial));
   flight.assemble();
