@@ -1,43 +1,20 @@
-// Plans, claims, starts, flies, reports, and leaves nothing behind.
+// Flies and reports.
 #include "deploy/command/demo.hpp"
 
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <memory>
 
-#include "core/runtime/stop_signal.hpp"
-#include "deploy/command/demo_fleet.hpp"
 #include "deploy/command/demo_flight.hpp"
 #include "deploy/command/demo_report.hpp"
-#include "deploy/command/demo_view.hpp"
-#include "deploy/hangup.hpp"
-#include "deploy/net/net.hpp"
-#include "deploy/supervisor/module_plan.hpp"
+#include "deploy/command/fleet_run.hpp"
 
 namespace eciton::deploy {
 namespace {
 
 constexpr int interrupted_status = 130;
-
-void write_files(const std::vector<DemoFile>& files) {
-  for (const DemoFile& file : files) {
-    std::ofstream out(file.path);
-    out << file.text;
-    if (!out.flush()) throw BadInput{{"config " + file.path.string() + " cannot be written"}};
-  }
-}
-
-void keep_logs(const DemoOptions& options, const Launches& launches) {
-  if (options.keep_logs.empty()) return;
-  for (const auto& launch : launches) {
-    if (const Status status = launch->keep_logs(options.keep_logs); !status) {
-      std::fprintf(stderr, "%s\n", status.error().message.c_str());
-    }
-  }
-}
 
 /// A flight of minutes must not end with figures that cannot be written.
 void check_output_paths(const DemoOptions& options) {
@@ -49,51 +26,16 @@ void check_output_paths(const DemoOptions& options) {
   }
 }
 
-/// Before anything starts: rights, and the net of that name if it is up.
-std::optional<net::NetSpec> running_net(const DemoOptions& options) {
-  if (!options.hosts) return std::nullopt;
-  ok_or_throw(net::check_rights());
-  for (const net::KnownNet& known : net::known_nets()) {
-    if (known.up && known.spec.name == options.net) return known.spec;
-  }
-  return std::nullopt;
-}
-
-/// The net first: its hosts are where the others start.
-void start_fleet(const DemoFleet& fleet, Launches& launches) {
-  Launch* relay = fleet.own_net ? launches.back().get() : nullptr;
-  if (relay != nullptr) {
-    ok_or_throw(relay->start());
-    while (!net::wait_until_up(fleet.own_net->name, std::chrono::milliseconds(20))) {
-      relay->check([&](const ChildReport& report) { throw BadInput{{describe(*relay, report)}}; });
-    }
-  }
-  for (const auto& launch : launches) {
-    if (launch.get() != relay) ok_or_throw(launch->start());
-  }
-}
-
 int fly_demo(const DemoOptions& given) {
-  if (!given.dds.empty()) ::unsetenv("ECITON_DDS");  // what is asked for here counts more
-  const DemoOptions options = value_or_throw(resolve(given));
-  const DemoFleet fleet =
-      value_or_throw(plan_demo(options, program_directory(), runtime_root(), running_net(options)));
-  ok_or_throw(check_vendors(fleet.plans));
-  check_output_paths(options);
-
+  check_output_paths(given);
   runtime::StopFlag stop;
   const runtime::StopOnSignals on_signals(stop);
-  const StopOnHangup on_hangup(stop);
-  const IgnoredSignals ignored({SIGPIPE});  // children end by our hand also when nobody reads
-  Launches launches = value_or_throw(claim_all(fleet.plans));
-  write_files(fleet.files);
-  start_fleet(fleet, launches);
-  DemoView view(stdout);
-  if (options.hosts)
-    view.say("on the radio of net " + options.net + "; disturb it with: eciton net set --name " + options.net +
-             " delay=20ms loss=10%");
-  std::optional<DemoFailure> failure;
-  {
+  std::optional<FlightFailure> failure;
+  run_fleet(given, stop, [&](const DemoOptions& options, const DemoFleet& fleet, Launches& launches) {
+    DemoView view(stdout);
+    if (options.hosts)
+      view.say("on the radio of net " + options.net + "; disturb it with: eciton net set --name " + options.net +
+               " delay=20ms loss=10%");
     DemoFlight flight(fleet, launches, stop, view);
     failure = flight.fly();
     if (failure && !failure->interrupted) print_failure(*failure, flight, launches);
@@ -102,11 +44,7 @@ int fly_demo(const DemoOptions& given) {
       const Status written = write_measurement(options.json_file, demo_measurement(options, fleet, flight, launches));
       if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
     }
-  }
-  stop_all(launches);
-  keep_logs(options, launches);
-  launches.clear();
-  if (fleet.own_net) ok_or_throw(net::take_down(fleet.own_net->name));  // nothing, unless its relay was killed
+  });
   if (!failure) return 0;
   if (failure->interrupted) std::fprintf(stderr, "interrupted: everything is down\n");
   return failure->interrupted ? interrupted_status : 1;

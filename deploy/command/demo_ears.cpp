@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/base/wall_clock.hpp"
+
 namespace eciton::deploy {
 namespace {
 
@@ -24,7 +26,11 @@ DemoEar::DemoEar(std::uint32_t id, const bus::ParticipantConfig& config)
       truth_contact_(ring_.create_reader(topics::truth_contact)) {}
 
 void DemoEar::poll(DemoPhase phase, const msg::ModuleState* state, DemoFigures& figures) {
-  while (const auto beat = heartbeat_.take()) heartbeats_[std::string(beat->value.service.view())] = beat->value;
+  while (const auto beat = heartbeat_.take()) {
+    const std::string service(beat->value.service.view());
+    heartbeats_[service] = beat->value;
+    beat_heard_at_[service] = monotonic_now();
+  }
   while (const auto wrench = external_wrench_.take()) {
     if (wrench->value.module_id == id_) zeroed_ = wrench->value.zeroed;
   }
@@ -58,6 +64,11 @@ void DemoEar::poll(DemoPhase phase, const msg::ModuleState* state, DemoFigures& 
     error_m[k] = state->p_WM_m[k] - truth_m;
   }
   figures.estimation_error_m.add(length(error_m));
+}
+
+Duration DemoEar::heartbeat_age(const std::string& service) const {
+  const auto heard = beat_heard_at_.find(service);
+  return heard == beat_heard_at_.end() ? Duration::max() : monotonic_now() - heard->second;
 }
 
 std::optional<msg::FlightMode> DemoEar::flight_mode() const {

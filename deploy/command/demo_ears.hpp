@@ -53,6 +53,8 @@ class DemoEar {
   std::uint32_t id() const { return id_; }
   bus::Participant& participant() { return ring_; }
   const std::map<std::string, msg::Heartbeat>& heartbeats() const { return heartbeats_; }
+  /// Since it was heard here; for ever when it never was.
+  Duration heartbeat_age(const std::string& service) const;
   std::optional<msg::FlightMode> flight_mode() const;
   bool zeroed() const { return zeroed_; }
   bool latched() const { return latched_; }
@@ -68,6 +70,7 @@ class DemoEar {
   bus::Reader<msg::TruthContact> truth_contact_;
 
   std::map<std::string, msg::Heartbeat> heartbeats_;
+  std::map<std::string, Duration> beat_heard_at_;
   std::optional<msg::TruthPose> truth_;
   std::optional<std::array<double, 3>> goal_m_;
   std::int64_t compared_ns_ = 0;

@@ -1,195 +1,79 @@
-// Watching while the flight goes on. The steps themselves are in demo_steps.cpp.
+// The steps of a demo's flight, in their order.
 #include "deploy/command/demo_flight.hpp"
-
-#include <cstdio>
 
 #include "core/base/wall_clock.hpp"
 
 namespace eciton::deploy {
 namespace {
 
-constexpr Duration pace = std::chrono::milliseconds(5);
-constexpr Duration standstill_max = std::chrono::seconds(30);  // of the modules' clock, on the wall
-constexpr Duration speed_window = std::chrono::seconds(1);
-constexpr double wall_time_factor = 12;  // a slow machine or a slow vendor: simulated time lags so much at worst
-constexpr std::size_t faults_kept = 12;
-
-bus::ParticipantConfig participant(const DemoFleet& fleet, const std::string& name, std::uint32_t domain,
-                                   const std::string& network_interface) {
-  return {.vendor = fleet.tool_vendor,
-          .domain = domain,
-          .name = name,
-          .network_interface = network_interface,
-          .peers = {}};
-}
-
-/// With all its sockets and threads in the operator's host, if there is one.
-bus::Participant join_swarm(const DemoFleet& fleet) {
-  const net::InNamespace inside(fleet.swarm_namespace);
-  return bus::Participant(participant(fleet, "demo", fleet.swarm_domain, fleet.swarm_interface));
-}
+constexpr double morph_angle_rad = 0.4;
+constexpr double morph_pitch_rad = 0.15;
+constexpr double morph_rate_rad_s = 0.12;
+constexpr double morph_timeout_s = 30;  // on the modules' clock
+constexpr double settle_s = 2.5;        // of a hover before it counts as one
 
 }  // namespace
 
-DemoFlight::DemoFlight(const DemoFleet& fleet, Launches& launches, const runtime::StopFlag& stop, DemoView& view)
-    : fleet_(fleet),
-      launches_(launches),
-      stop_(stop),
-      view_(view),
-      swarm_(join_swarm(fleet)),
-      operator_(swarm_),
-      fault_(swarm_.create_reader(topics::fault)) {
-  for (const LaunchPlan& plan : fleet.plans) {
-    if (plan.module_id == 0) continue;
-    ids_.push_back(plan.module_id);
-    const net::InNamespace inside(plan.network_namespace);
-    ears_.push_back(
-        std::make_unique<DemoEar>(plan.module_id, participant(fleet, "demo", plan.domain, plan.network_interface)));
+std::optional<FlightFailure> DemoFlight::fly() {
+  std::optional<FlightFailure> failure;
+  try {
+    wait_for_modules();
+    arm_and_take_off();
+    hover_until_zeroed();
+    dock_all();
+    hover_as_one_body();
+    morph();
+    undock_all();
+    result_.separated = true;
+    spread_and_land();
+  } catch (const FlightFailure& failed) {
+    failure = failed;
   }
+  result_.figures = figures_;
+  result_.simulated_s = now_s();
+  result_.wall_s = to_s(monotonic_now() - wall_begin_);
+  return failure;
 }
 
-double DemoFlight::now_s() const { return time_begin_ ? to_s(operator_.module_now() - *time_begin_) : 0; }
-
-void DemoFlight::begin(const std::string& step, DemoPhase phase) {
-  step_ = step;
-  phase_ = phase;
-  view_.step(step, now_s());
-}
-
-void DemoFlight::fail(const std::string& why, std::set<std::string> processes) {
-  throw DemoFailure{.step = step_, .why = why, .processes = std::move(processes)};
-}
-
-std::set<std::string> DemoFlight::logs_of(std::uint32_t id) const {
-  std::set<std::string> logs;
-  for (const LaunchPlan& plan : fleet_.plans) {
-    if (plan.module_id != id) continue;
-    for (const PlannedProcess& process : plan.processes) logs.insert(plan.name + "/" + process.name);
-  }
-  return logs;
-}
-
-const msg::ChainView* DemoFlight::view_of(std::uint32_t id) const {
-  const KnownModule* module = operator_.fleet().find(id);
-  return module != nullptr && module->view ? &*module->view : nullptr;
-}
-
-void DemoFlight::take_faults() {
-  while (const auto fault = fault_.take()) {
-    std::string line = "m" + std::to_string(fault->value.module_id) + "/" + fault->value.service.c_str();
-    if (!fault->value.device.empty()) line += " (" + std::string(fault->value.device.view()) + ")";
-    line += ": " + std::string(fault->value.text.view());
-    if (!faults_.empty() && faults_.back() == line) continue;
-    faults_.push_back(line);
-    if (faults_.size() > faults_kept) faults_.erase(faults_.begin());
-  }
-}
-
-void DemoFlight::pump() {
-  watch(launches_, {stop_.file_descriptor()}, pace, [&](Launch& launch, const ChildReport& report) {
-    fail(describe(launch, report), {launch.plan().name + "/" + report.name, fleet_.plans[0].name + "/world"});
-  });
-  if (stop_.requested()) throw DemoFailure{.step = step_, .why = "interrupted", .processes = {}, .interrupted = true};
-  for (const auto& launch : launches_) {
-    if (launch->stop_requested()) fail("'eciton down' asked for the end of " + launch->plan().name);
-  }
-  operator_.poll(wall_now());
-  take_faults();
-  for (const auto& ear : ears_) {
-    const KnownModule* module = operator_.fleet().find(ear->id());
-    ear->poll(phase_, module != nullptr && module->state ? &*module->state : nullptr, result_.figures);
-  }
-  const Duration now = monotonic_now();
-  if (time_begin_ && operator_.module_now() > advanced_to_) {
-    advanced_to_ = operator_.module_now();
-    advanced_at_ = now;
-  }
-  if (time_begin_ && now - advanced_at_ > standstill_max) {
-    fail("the modules' time stands still since " + std::to_string(now_s()) + " s", {fleet_.plans[0].name + "/world"});
-  }
-  draw(now);
-}
-
-void DemoFlight::draw(Duration monotonic) {
-  if (monotonic - speed_wall_ > speed_window) {
-    speed_factor_ = (now_s() - speed_simulated_s_) / to_s(monotonic - speed_wall_);
-    speed_simulated_s_ = now_s();
-    speed_wall_ = monotonic;
-  }
-  std::vector<DemoViewLine> lines;
-  for (const auto& ear : ears_) {
-    DemoViewLine line{.module = "m" + std::to_string(ear->id()),
-                      .flight_mode = "-",
-                      .docking = "-",
-                      .gap = {},
-                      .chain = "-",
-                      .latched = ear->latched() ? "latched" : ""};
-    if (const auto mode = ear->flight_mode()) line.flight_mode = name_of(*mode);
-    if (const KnownModule* module = operator_.fleet().find(ear->id())) {
-      if (module->docking) {
-        const msg::DockingState& docking = *module->docking;
-        line.docking = name_of(docking.phase);
-        char gap[48];
-        std::snprintf(gap, sizeof gap, "gap %.3f m", docking.axial_gap_m);
-        if (docking.role == msg::DockingRole::follower && docking.phase != msg::DockingPhase::idle) line.gap = gap;
-      }
-      if (module->in_chain()) {
-        line.chain = "chain ";
-        for (std::size_t k = 0; k < module->view->members.size(); ++k) {
-          line.chain += (k == 0 ? "" : "-") + std::to_string(module->view->members[k]);
-        }
-      } else if (module->view) {
-        line.chain = "alone";
-      }
+void DemoFlight::dock_all() {
+  for (std::size_t k = 1; k < ids_.size(); ++k) {
+    const std::uint32_t follower = ids_[k], target = target_for(follower);
+    const GoalReport& report = *operator_.report(dock(follower));
+    DockingRecord record{.follower = follower,
+                         .target = target,
+                         .time_s = to_s(report.ended_at - report.accepted_at),
+                         .declared_by = {}};
+    if (const auto& docking = operator_.fleet().find(follower)->docking) {
+      record.declared_by = name_of(docking->declared_by);
+      record.recoveries = docking->recoveries;
     }
-    lines.push_back(line);
+    result_.dockings.push_back(record);
+    agree(k + 1);
   }
-  view_.refresh(now_s(), speed_factor_, lines, monotonic);
+  result_.assembled = true;
 }
 
-void DemoFlight::wait_until(const std::function<bool()>& done, double timeout_s,
-                            const std::function<std::string()>& lacks) {
-  const double begin_s = now_s();
-  const Duration wall_begin = monotonic_now();
-  while (!done()) {
-    pump();
-    const double waited_s = to_s(monotonic_now() - wall_begin);
-    if (now_s() - begin_s > timeout_s || waited_s > wall_time_factor * timeout_s + 10) {
-      char text[96];
-      std::snprintf(text, sizeof text, "not done after %.1f s of flight, %.1f s here: ", now_s() - begin_s, waited_s);
-      fail(text + lacks());
-    }
+void DemoFlight::hover_as_one_body() {
+  begin("hover as one body, chain " + members_text(*view_of(ids_.front())), DemoPhase::assembled);
+  hover(settle_s);
+}
+
+void DemoFlight::morph() {
+  const std::size_t joints = 2 * ids_.size();
+  std::vector<double> bent(joints, 0.0);
+  // A bow: the yaw joints, male side, of all but the last member, and the pitch joints, female side, of all
+  // but the first; the outer ones move nothing.
+  for (std::size_t k = 0; k + 1 < ids_.size(); ++k) {
+    bent[2 * k] = morph_angle_rad;
+    bent[2 * (k + 1) + 1] = k % 2 == 0 ? morph_pitch_rad : -morph_pitch_rad;
   }
-}
-
-void DemoFlight::hover(double seconds) {
-  const double end_s = now_s() + seconds;
-  wait_until([&] { return now_s() >= end_s; }, seconds + 5, [] { return "the time does not pass"; });
-}
-
-void DemoFlight::follow(const Goals& goals, double timeout_s) {
-  const auto done = [&](std::uint64_t goal) { return is_over(operator_.report(goal)->progress); };
-  const auto lacks = [&] {
-    std::string text;
-    for (const std::uint64_t goal : goals) {
-      const GoalReport& report = *operator_.report(goal);
-      if (done(goal)) continue;
-      text += (text.empty() ? "" : "; ") + report.what + " is " + std::string(to_string(report.progress));
-      if (!report.reason.empty()) text += ": " + report.reason;
-    }
-    return text;
-  };
-  wait_until([&] { return std::all_of(goals.begin(), goals.end(), done); }, timeout_s, lacks);
-}
-
-void DemoFlight::finish(const Goals& goals, double timeout_s) {
-  follow(goals, timeout_s);
-  for (const std::uint64_t goal : goals) {
-    const GoalReport& report = *operator_.report(goal);
-    if (report.progress == GoalProgress::succeeded) continue;
-    fail(report.what + " was " + std::string(to_string(report.progress)) + ": " + report.reason,
-         logs_of(report.module_id));
-  }
+  begin("morph into a bow", DemoPhase::morphing);
+  finish({operator_.morph(ids_.front(), bent, morph_rate_rad_s)}, morph_timeout_s);
+  begin("and back to straight", DemoPhase::morphing);
+  finish({operator_.morph(ids_.back(), std::vector<double>(joints, 0.0), morph_rate_rad_s)}, morph_timeout_s);
+  result_.morphed = true;
+  phase_ = DemoPhase::assembled;
+  hover(1);
 }
 
 }  // namespace eciton::deploy

@@ -151,7 +151,7 @@ Measurement demo_measurement(const DemoOptions& options, const DemoFleet& fleet,
   return m;
 }
 
-void print_failure(const DemoFailure& failure, const DemoFlight& flight, const Launches& launches) {
+void print_failure(const FlightFailure& failure, const DemoFlight& flight, const Launches& launches) {
   std::fprintf(stderr, "\nthe demo failed at: %s\n  %s\n", failure.step.c_str(), failure.why.c_str());
   for (const std::string& fault : flight.faults()) std::fprintf(stderr, "  fault: %s\n", fault.c_str());
   for (const auto& launch : launches) {

@@ -14,6 +14,6 @@ Measurement demo_measurement(const DemoOptions& options, const DemoFleet& fleet,
                              const Launches& launches);
 
 /// Which step failed and why, and the last lines of the logs that may tell more; on standard error.
-void print_failure(const DemoFailure& failure, const DemoFlight& flight, const Launches& launches);
+void print_failure(const FlightFailure& failure, const DemoFlight& flight, const Launches& launches);
 
 }  // namespace eciton::deploy

@@ -6,7 +6,6 @@
 namespace eciton::deploy {
 namespace {
 
-constexpr double spacing_m = 1.9;  // 1.1 m between two modules' docking points
 constexpr double settle_s = 6;
 constexpr double goto_limit_s = 30;
 constexpr double morph_limit_s = 120;
@@ -19,7 +18,7 @@ SimulationConfig row_config(const ExperimentConfig& config, std::uint32_t trial,
   if (!simulated.world.modules.empty()) return simulated;
   const std::uint32_t count = config.modules > 0 ? config.modules : modules;
   for (std::uint32_t k = 0; k < count; ++k) {
-    simulated.world.modules.push_back({.id = k + 1, .p_WB_m = {-spacing_m * k, 0, 0}});
+    simulated.world.modules.push_back({.id = k + 1, .p_WB_m = {-row_spacing_m * k, 0, 0}});
   }
   return simulated;
 }

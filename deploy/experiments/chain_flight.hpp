@@ -12,6 +12,7 @@
 namespace eciton::deploy {
 
 inline constexpr double chain_height_m = 1.5;
+inline constexpr double row_spacing_m = 1.9;  // 1.1 m between two modules' docking points
 
 /// The experiment's simulation, its modules in a row along x unless the config places them.
 SimulationConfig row_config(const ExperimentConfig& config, std::uint32_t trial, std::uint32_t modules);

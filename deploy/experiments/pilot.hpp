@@ -26,8 +26,8 @@ class Pilot {
   /// Arms all modules, takes them off to their heights, and lets them hover until their observers are zeroed.
   /// Throws std::runtime_error naming the module and the step that failed.
   void bring_to_hover(const std::vector<double>& heights_m);
-  /// Zeroes all modules, which hover level, anew, while each leans over slowly, forward and to a side: what is false in
-  /// the height of the centre of mass and in the sensor's yaw shows only so. Throws likewise.
+  /// Zeroes all modules, which hover level, anew, while each leans over slowly, forward and to a side: what is false
+  /// in the height of the centre of mass and in the sensor's yaw shows only so. Throws likewise.
   void zero_leaning();
   /// Docks, asking again while it is refused for want of zeroing. The report of the last goal.
   GoalReport dock(std::uint32_t follower, std::uint32_t target, double limit_s);

@@ -20,6 +20,8 @@ constexpr double preload_N = 3, preload_Nm = 0.3;
 constexpr double settled_N = 0.3, settled_Nm = 0.05;
 constexpr double preload_s = 4;
 constexpr double watch_local_s = 12, watch_paper_s = 60;
+constexpr double link_lever_m = 0.4;  // from the middle of a member to its links
+constexpr double reserve_Nm = 1.5;    // of a member about each axis, well within its rotors' reach at hover
 constexpr double path_m = 0.4, path_speed_m_s = 0.3, path_limit_s = 60;
 
 /// One way to set the paper's law; authors' first: 40 Hz and 0.1.
@@ -48,7 +50,26 @@ std::vector<robot::Pose> path_about(const robot::Pose& home) {
   return waypoints;
 }
 
-/// Forces and moments of one size in directions of their own, drawn from the seed.
+/// The first module is the base of every chain, however long, so that lengths are compared and not what the seed has
+/// drawn for one module and another: the others stand by turns ahead of it and behind.
+std::vector<hal::sim::ModuleStart> row_about_the_base(std::uint32_t modules) {
+  std::vector<hal::sim::ModuleStart> row;
+  for (std::uint32_t k = 0; k < modules; ++k) {
+    const double place = k % 2 == 1 ? (k + 1) / 2 : -static_cast<double>(k / 2);
+    row.push_back({.id = k + 1, .p_WB_m = {row_spacing_m * place, 0, 0}});
+  }
+  return row;
+}
+
+/// Moment about a member's middle that the rotors must make for the wanted wrenches of the links behind and ahead.
+robot::Vector3 member_moment_Nm(const msg::DesiredContact& behind, const msg::DesiredContact& ahead) {
+  const robot::Vector3 force_N = robot::vector(behind.force_M_N) + robot::vector(ahead.force_M_N);
+  return robot::Vector3(link_lever_m, 0, 0).cross(force_N) + robot::vector(ahead.moment_M_Nm) -
+         robot::vector(behind.moment_M_Nm);
+}
+
+/// Forces and moments of one size in directions of their own, drawn from the seed; again where the rotors of the
+/// member between two links could not make up for both.
 std::vector<msg::DesiredContact> preload(std::uint64_t seed, std::size_t links) {
   std::mt19937_64 generator(seed);
   const auto direction = [&] {
@@ -57,9 +78,11 @@ std::vector<msg::DesiredContact> preload(std::uint64_t seed, std::size_t links) 
     return robot::Vector3(v.normalized());
   };
   std::vector<msg::DesiredContact> out(links);
-  for (msg::DesiredContact& link : out) {
-    link.force_M_N = robot::array(robot::Vector3(preload_N * direction()));
-    link.moment_M_Nm = robot::array(robot::Vector3(preload_Nm * direction()));
+  for (std::size_t k = 0; k < links; ++k) {
+    do {
+      out[k].force_M_N = robot::array(robot::Vector3(preload_N * direction()));
+      out[k].moment_M_Nm = robot::array(robot::Vector3(preload_Nm * direction()));
+    } while (k > 0 && member_moment_Nm(out[k - 1], out[k]).cwiseAbs().maxCoeff() > reserve_Nm);
   }
   return out;
 }
@@ -123,7 +146,11 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   ExperimentConfig still = config;
   still.simulation.world.wakes = false;
   still.simulation.module.control.law = "local";
-  ChainFlight flight(still, trial, modules_of(config, trial));
+  // The same gains for all lengths: a chain of one flies as a member does.
+  control::ControlConfig& control = still.simulation.module.control;
+  if (modules_of(config, trial) == 1) control.stiffness_alone = control.stiffness;
+  still.simulation.world.modules = row_about_the_base(modules_of(config, trial));
+  ChainFlight flight(still, 0, modules_of(config, trial));
   flight.assemble();
   Figures out;
   const bool flown = fly_path(flight, path_about(flight.home()), path_speed_m_s, path_limit_s);

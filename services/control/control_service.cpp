@@ -343,7 +343,8 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   const robot::Vector3 c_B = robot::com_offset_B(airframe_, joint_angles());
   // A chain that docks, or is docked to, must hit a port as a module does: as stiff.
   const bool gentle = in_chain() && !is_docking(docking_now());
-  pose_control_.set_gains(gentle ? between(gains_assembled(), gains_free(), config_.stiffness) : gains_free());
+  pose_control_.set_gains(
+      between(gains_assembled(), gains_free(), gentle ? config_.stiffness : config_.stiffness_alone));
   const robot::Wrench feed_forward_W = hand_over_.update(feed_forward(dt_s) + correction(c_B), dt_s);
   flown_ = separated(now, dt_s);
   const robot::Wrench demanded_B =

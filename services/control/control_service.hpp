@@ -34,6 +34,7 @@ struct ControlConfig {
   double local_rate_1_s = 14;  // of the local law, by the number of members; at most a third of the observer's gain
   bool integrate_all = false;  // in a chain every member's pose integral runs, as in the paper; else the base's alone
   double stiffness = 0;        // of the pose control in a chain: 0 gentle, 1 as stiff as in free flight
+  double stiffness_alone = 1;  // and when it flies alone or docks
   double law_sign = 1;         // -1: an experiment's control, which must fail
   bool disturbance_feedback = true;  // the observer's wrench fed back in free flight
   bool model_correction = true;      // what zeroing found to be false in the airframe's model is made up for
@@ -55,6 +56,7 @@ struct ControlConfig {
     v("local_rate_1_s", local_rate_1_s, in_range(0.1, 100));
     v("integrate_all", integrate_all);
     v("stiffness", stiffness, in_range(0, 1));
+    v("stiffness_alone", stiffness_alone, in_range(0, 1));
     v("disturbance_feedback", disturbance_feedback);
     v("model_correction", model_correction);
     v("takeoff_m_s", takeoff_m_s, in_range(0.05, 2));

@@ -38,6 +38,7 @@ DockingService::DockingService(bus::Participant& ring, const DockingServiceConfi
 
 void DockingService::step(TimePoint now) noexcept {
   const double dt_s = first_step_ ? 0 : std::clamp(to_s(now - last_step_), 0.0, 0.1);
+  if (first_step_) end_interrupted(now);
   heard_.take(now);
   update_membership(now);
   update_base(now, dt_s);

@@ -62,6 +62,12 @@ class DockingService final : public runtime::Service {
     return runtime::every(from_s(1 / config_.rate_Hz), runtime::Phase::coordinate);
   }
   void step(TimePoint now) noexcept override;
+  std::uint32_t state_version() const noexcept override { return 1; }
+  /// The goals under way: a start anew knows nothing else of them, and says that they are over.
+  void save_state(runtime::StateWriter& writer) const noexcept override {
+    writer(goal_pending_ ? goal_id_ : 0, handed_on_.goal_id);
+  }
+  void load_state(runtime::StateReader& reader) noexcept override { reader(interrupted_[0], interrupted_[1]); }
 
  private:
   /// What joins the follower's port to the target's.
@@ -81,6 +87,7 @@ class DockingService final : public runtime::Service {
 
   // docking_service_goals.cpp
   void take_goals(TimePoint now) noexcept;
+  void end_interrupted(TimePoint now) noexcept;
   void dock(const msg::DockGoal& goal, TimePoint now) noexcept;
   void undock(const msg::DockGoal& goal, TimePoint now) noexcept;
   void begin_docking(const PortChoice& choice, std::uint64_t goal_id, TimePoint now) noexcept;
@@ -128,6 +135,7 @@ class DockingService final : public runtime::Service {
   std::uint64_t taken_over_ = 0;  // the last docking that a chain mate handed on to us
   bool goal_pending_ = false;
   HandedOn handed_on_;
+  std::array<std::uint64_t, 2> interrupted_{};             // goals that the last start left unanswered
   SmoothedPose X_WT_;                                      // the target's port
   SmoothedPose X_MB_;                                      // our chain's base, from our own M
   std::uint64_t base_epoch_ = 0;                           // of the chain it belongs to

@@ -175,6 +175,13 @@ void DockingService::watch_handed_on(TimePoint now) noexcept {
   }
 }
 
+void DockingService::end_interrupted(TimePoint now) noexcept {
+  for (std::uint64_t& goal_id : interrupted_) {
+    if (goal_id != 0) answer(goal_id, msg::GoalPhase::aborted, "the docking service was started anew", now);
+    goal_id = 0;
+  }
+}
+
 void DockingService::undock(const msg::DockGoal& goal, TimePoint now) noexcept {
   if (under_way()) {
     const DockAnswer busy{DockRefusal::already_docking, config_.module_id};

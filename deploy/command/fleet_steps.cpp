@@ -1,29 +1,20 @@
-// The steps of a demo's flight, in their order.
+// The steps that flights share.
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/wall_clock.hpp"
-#include "deploy/command/demo_flight.hpp"
+#include "deploy/command/fleet_flight.hpp"
 
 namespace eciton::deploy {
 namespace {
 
 constexpr double height_m = 1.5;
-constexpr double morph_angle_rad = 0.4;
-constexpr double morph_pitch_rad = 0.15;
-constexpr double morph_rate_rad_s = 0.12;
 constexpr double home_speed_m_s = 0.8;
 constexpr double settle_s = 2.5;  // of a hover before it counts as one
 
 // Time-outs, on the modules' clock.
 constexpr double start_timeout_s = 20, arm_timeout_s = 10, flight_timeout_s = 30, zero_timeout_s = 20,
-                 dock_timeout_s = 60, morph_timeout_s = 30;
-
-std::string members_text(const msg::ChainView& view) {
-  std::string text;
-  for (const std::uint32_t member : view.members) text += (text.empty() ? "" : "-") + std::to_string(member);
-  return text;
-}
+                 dock_timeout_s = 60;
 
 double distance(const msg::ModuleState& a, const msg::ModuleState& b) {
   return std::hypot(a.p_WM_m[0] - b.p_WM_m[0], a.p_WM_m[1] - b.p_WM_m[1], a.p_WM_m[2] - b.p_WM_m[2]);
@@ -31,34 +22,13 @@ double distance(const msg::ModuleState& a, const msg::ModuleState& b) {
 
 }  // namespace
 
-template <class Make>
-DemoFlight::Goals DemoFlight::for_each_module(Make make) {
-  Goals goals;
-  for (std::size_t k = 0; k < ids_.size(); ++k) goals.push_back(make(ids_[k], k));
-  return goals;
+std::string members_text(const msg::ChainView& view) {
+  std::string text;
+  for (const std::uint32_t member : view.members) text += (text.empty() ? "" : "-") + std::to_string(member);
+  return text;
 }
 
-std::optional<DemoFailure> DemoFlight::fly() {
-  wall_begin_ = speed_wall_ = advanced_at_ = monotonic_now();
-  std::optional<DemoFailure> failure;
-  try {
-    wait_for_modules();
-    arm_and_take_off();
-    hover_until_zeroed();
-    dock_all();
-    hover_as_one_body();
-    morph();
-    undock_all();
-    spread_and_land();
-  } catch (const DemoFailure& failed) {
-    failure = failed;
-  }
-  result_.simulated_s = now_s();
-  result_.wall_s = to_s(monotonic_now() - wall_begin_);
-  return failure;
-}
-
-void DemoFlight::wait_for_modules() {
+void FleetFlight::wait_for_modules() {
   begin("modules start and find each other", DemoPhase::grounded);
   const auto ready = [&](std::uint32_t id, const DemoEar& ear) {
     const KnownModule* module = operator_.fleet().find(id);
@@ -87,7 +57,7 @@ void DemoFlight::wait_for_modules() {
   wait_until(all_ready, start_timeout_s, lacks);
 }
 
-void DemoFlight::arm_and_take_off() {
+void FleetFlight::arm_and_take_off() {
   begin("arm", DemoPhase::grounded);
   finish(for_each_module([&](std::uint32_t id, std::size_t) { return operator_.arm(id); }), arm_timeout_s);
   begin("take off", DemoPhase::other);
@@ -95,7 +65,7 @@ void DemoFlight::arm_and_take_off() {
          flight_timeout_s);
 }
 
-void DemoFlight::hover_until_zeroed() {
+void FleetFlight::hover_until_zeroed() {
   begin("hover, while the wrench observers are zeroed", DemoPhase::other);
   hover(settle_s);
   for (std::size_t k = 0; k < ears_.size(); ++k) {
@@ -117,23 +87,17 @@ void DemoFlight::hover_until_zeroed() {
   for (const auto& ear : ears_) ear->set_goal(std::nullopt);
 }
 
-void DemoFlight::dock_all() {
-  for (std::size_t k = 1; k < ids_.size(); ++k) {
-    dock(ids_[k]);
-    agree(k + 1);
-  }
-  result_.assembled = true;
+std::uint32_t FleetFlight::target_for(std::uint32_t follower) const {
+  const msg::ChainView* view = view_of(ids_.front());
+  if (view == nullptr || view->members.size() < 2) return ids_.front();
+  const KnownFleet& fleet = operator_.fleet();
+  const auto far = [&](std::uint32_t id) { return distance(*fleet.find(id)->state, *fleet.find(follower)->state); };
+  const std::uint32_t front = view->members[0], back = view->members.back();
+  return far(front) < far(back) ? front : back;
 }
 
-void DemoFlight::dock(std::uint32_t follower) {
-  // The nearer end of the chain so far; its first module stands for it.
-  std::uint32_t target = ids_.front();
-  const auto& fleet = operator_.fleet();
-  if (const msg::ChainView* view = view_of(ids_.front()); view != nullptr && view->members.size() > 1) {
-    const auto far = [&](std::uint32_t id) { return distance(*fleet.find(id)->state, *fleet.find(follower)->state); };
-    const std::uint32_t front = view->members[0], back = view->members.back();
-    target = far(front) < far(back) ? front : back;
-  }
+std::uint64_t FleetFlight::dock(std::uint32_t follower) {
+  const std::uint32_t target = target_for(follower);
   begin("dock " + std::to_string(follower) + " " + std::to_string(target), DemoPhase::docking);
   const double begin_s = now_s();
   std::uint64_t goal = 0;
@@ -148,19 +112,10 @@ void DemoFlight::dock(std::uint32_t follower) {
     hover(0.5);
   }
   finish({goal}, dock_timeout_s);
-  const GoalReport& report = *operator_.report(goal);
-  DockingRecord record{.follower = follower,
-                       .target = target,
-                       .time_s = to_s(report.ended_at - report.accepted_at),
-                       .declared_by = {}};
-  if (const auto& docking = fleet.find(follower)->docking) {
-    record.declared_by = name_of(docking->declared_by);
-    record.recoveries = docking->recoveries;
-  }
-  result_.dockings.push_back(record);
+  return goal;
 }
 
-void DemoFlight::agree(std::size_t members) {
+void FleetFlight::agree(std::size_t members) {
   const auto agreed = [&] {
     for (std::size_t k = 0; k < members; ++k) {
       const msg::ChainView *view = view_of(ids_[k]), *first = view_of(ids_.front());
@@ -179,30 +134,7 @@ void DemoFlight::agree(std::size_t members) {
   });
 }
 
-void DemoFlight::hover_as_one_body() {
-  begin("hover as one body, chain " + members_text(*view_of(ids_.front())), DemoPhase::assembled);
-  hover(settle_s);
-}
-
-void DemoFlight::morph() {
-  const std::size_t joints = 2 * ids_.size();
-  std::vector<double> bent(joints, 0.0);
-  // A bow: the yaw joints, male side, of all but the last member, and the pitch joints, female side, of all
-  // but the first; the outer ones move nothing.
-  for (std::size_t k = 0; k + 1 < ids_.size(); ++k) {
-    bent[2 * k] = morph_angle_rad;
-    bent[2 * (k + 1) + 1] = k % 2 == 0 ? morph_pitch_rad : -morph_pitch_rad;
-  }
-  begin("morph into a bow", DemoPhase::morphing);
-  finish({operator_.morph(ids_.front(), bent, morph_rate_rad_s)}, morph_timeout_s);
-  begin("and back to straight", DemoPhase::morphing);
-  finish({operator_.morph(ids_.back(), std::vector<double>(joints, 0.0), morph_rate_rad_s)}, morph_timeout_s);
-  result_.morphed = true;
-  phase_ = DemoPhase::assembled;
-  hover(1);
-}
-
-void DemoFlight::undock_all() {
+void FleetFlight::undock_all() {
   while (true) {
     const msg::ChainView* view = view_of(ids_.front());
     const std::size_t members = view == nullptr ? 0 : view->members.size();
@@ -223,10 +155,9 @@ void DemoFlight::undock_all() {
   }
   const auto loose = [](const auto& ear) { return !ear->latched(); };
   wait_until([&] { return std::all_of(ears_.begin(), ears_.end(), loose); }, 5, [] { return "a latch still holds"; });
-  result_.separated = true;
 }
 
-void DemoFlight::spread_and_land() {
+void FleetFlight::spread_and_land() {
   begin("go back and hover", DemoPhase::other);
   const auto home = [&](std::size_t k) { return std::array{fleet_.start_m[k][0], fleet_.start_m[k][1], height_m}; };
   finish(for_each_module(
