@@ -54,8 +54,8 @@ Walk walk(const Pose& X_TF, PortKind target_port, std::size_t members, const std
 TEST(ChainPathTest, GoesStraightInWhenAligned) {
   const Walk w = walk({Vector3(1.5, 0.4, 0.3), robot::Matrix3::Identity()}, PortKind::male, 2, {});
   EXPECT_TRUE(w.arrived);
-  // By hand: 1.3 m at 0.4 m/s, with ramps of 0.5 m/s^2.
-  EXPECT_NEAR(w.seconds, Vector3(1.2, 0.4, 0.3).norm() / 0.4 + 0.8, 0.1);
+  // By hand: 1.3 m at 0.55 m/s, with ramps of 1 m/s^2.
+  EXPECT_NEAR(w.seconds, Vector3(1.2, 0.4, 0.3).norm() / 0.55 + 0.55, 0.1);
   EXPECT_GE(w.clearance_m, 1.0);
 }
 
@@ -83,7 +83,7 @@ TEST(ChainPathTest, TurnsWhereThereIsRoomForAllOfIt) {
     const Walk w = walk(X_TF, target_port, members, mates);
     EXPECT_TRUE(w.arrived);
     EXPECT_GE(w.clearance_m, 0.95);
-    EXPECT_LE(w.speed_m_s_max, 0.4 + 0.3 + 1e-6);
+    EXPECT_LE(w.speed_m_s_max, 0.55 + 0.3 + 1e-6);
   }
 }
 
