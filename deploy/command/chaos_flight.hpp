@@ -25,8 +25,8 @@ struct ChaosOutcome {
   double back_s = 0;     // from the end of the cause until the role is filled, peers are heard
   double settled_s = 0;  // until all are at their places again
   double height_m_min = 0;
-  double deviation_m_max = 0;       // of any module from its place
-  std::vector<std::string> broken;  // bounds, in words
+  double deviation_m_max = 0;         // of any module from its place
+  std::vector<std::string> broken{};  // bounds, in words
 };
 
 class ChaosFlight final : public FleetFlight {
