@@ -13,7 +13,6 @@
 namespace eciton::deploy {
 namespace {
 
-constexpr int interrupted_status = 130;
 constexpr std::size_t random_cells = 12;  // of one flight
 
 struct ChaosOptions {
@@ -58,7 +57,7 @@ void fly_plan(const ChaosOptions& options, const ChaosPlan& plan, runtime::StopF
   fleet_options.keep_logs = options.keep_logs;
   run_fleet(fleet_options, stop, [&](const DemoOptions&, const DemoFleet& fleet, Launches& launches) {
     DemoView view(stderr);
-    ChaosFlight flight(fleet, launches, stop, view, plan);
+    ChaosFlight flight(fleet, launches, stop, view, fleet_options.net, plan);
     const std::optional<FlightFailure> failure = flight.fly();
     tally.outcomes.insert(tally.outcomes.end(), flight.outcomes().begin(), flight.outcomes().end());
     tally.interrupted = failure && failure->interrupted;

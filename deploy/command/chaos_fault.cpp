@@ -48,10 +48,9 @@ pid_t FaultInjector::pid_of(const ChaosCell& cell) const {
 }
 
 Status FaultInjector::set_link(std::uint32_t module_id, const std::string& word) {
-  const std::string net = fleet_.own_net ? fleet_.own_net->name : std::string(net::default_name);
   const std::string host = net::host_name(module_id);
-  if (const Status out = net::set_links(net, host, "", {word}); !out) return out;
-  return net::set_links(net, "", host, {word});
+  if (const Status out = net::set_links(net_, host, "", {word}); !out) return out;
+  return net::set_links(net_, "", host, {word});
 }
 
 Status FaultInjector::begin(const ChaosCell& cell) {

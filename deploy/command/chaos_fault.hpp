@@ -37,7 +37,7 @@ struct ChaosCell {
 
 class FaultInjector {
  public:
-  FaultInjector(const DemoFleet& fleet, const Launches& launches) : fleet_(fleet), launches_(launches) {}
+  FaultInjector(std::string net, const Launches& launches) : net_(std::move(net)), launches_(launches) {}
 
   /// An Error when there is nothing to strike.
   Status begin(const ChaosCell& cell);
@@ -50,7 +50,7 @@ class FaultInjector {
  private:
   Status set_link(std::uint32_t module_id, const std::string& word);
 
-  const DemoFleet& fleet_;
+  std::string net_;
   const Launches& launches_;
   pid_t struck_ = 0;
 };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double look_on_s = 1.5;  // after a blow, before anything is said to be settled
 constexpr double approach_gap_m_max = 0.9, approach_timeout_s = 30, dock_timeout_s = 60;
-constexpr double home_timeout_s = 30, height_m = 1.5;
+constexpr double apart_timeout_s = 30;
 
 double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -20,8 +20,8 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
 }  // namespace
 
 ChaosFlight::ChaosFlight(const DemoFleet& fleet, Launches& launches, const runtime::StopFlag& stop, DemoView& view,
-                         const ChaosPlan& plan)
-    : FleetFlight(fleet, launches, stop, view), plan_(plan), injector_(fleet_, launches) {}
+                         const std::string& net, const ChaosPlan& plan)
+    : FleetFlight(fleet, launches, stop, view), plan_(plan), injector_(net, launches) {}
 
 std::optional<FlightFailure> ChaosFlight::fly() {
   try {
@@ -79,10 +79,11 @@ void ChaosFlight::approach_and_strike(const ChaosCell& cell) {
     agree(2);
     undock_all();
   }
+  wait_until_apart();
   go_home();
 }
 
-void ChaosFlight::go_home() {
+void ChaosFlight::wait_until_apart() {
   const auto idle = [&] {
     return std::all_of(ids_.begin(), ids_.end(), [&](std::uint32_t id) {
       const KnownModule* module = operator_.fleet().find(id);
@@ -90,11 +91,7 @@ void ChaosFlight::go_home() {
              module->docking->phase == msg::DockingPhase::idle;
     });
   };
-  wait_until(idle, home_timeout_s, [] { return "a docking is not over"; });
-  finish(for_each_module([&](std::uint32_t id, std::size_t k) {
-           return operator_.go_to(id, {fleet_.start_m[k][0], fleet_.start_m[k][1], height_m}, 0, 0.8);
-         }),
-         home_timeout_s);
+  wait_until(idle, apart_timeout_s, [] { return "a docking is not over"; });
 }
 
 void ChaosFlight::take_places() {

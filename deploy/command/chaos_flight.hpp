@@ -32,7 +32,7 @@ struct ChaosOutcome {
 class ChaosFlight final : public FleetFlight {
  public:
   ChaosFlight(const DemoFleet& fleet, Launches& launches, const runtime::StopFlag& stop, DemoView& view,
-              const ChaosPlan& plan);
+              const std::string& net, const ChaosPlan& plan);
 
   /// Nothing when the flight came to its end, whatever bounds were broken on the way.
   std::optional<FlightFailure> fly();
@@ -49,7 +49,7 @@ class ChaosFlight final : public FleetFlight {
   bool all_at_place() const;
   bool flying_as_before() const;
   void take_places();
-  void go_home();
+  void wait_until_apart();
 
   ChaosPlan plan_;
   ChaosBounds bounds_;

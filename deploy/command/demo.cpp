@@ -14,8 +14,6 @@
 namespace eciton::deploy {
 namespace {
 
-constexpr int interrupted_status = 130;
-
 /// A flight of minutes must not end with figures that cannot be written.
 void check_output_paths(const DemoOptions& options) {
   if (options.json_file.empty()) return;

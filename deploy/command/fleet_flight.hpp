@@ -2,6 +2,7 @@
 // with the first step that fails. What the steps are is the demo's or the chaos run's.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <set>
@@ -52,6 +53,9 @@ class FleetFlight {
   /// Until the first so many modules all fly by one view of just themselves.
   void agree(std::size_t members);
   void undock_all();
+  /// All modules, apart, to where they hovered first.
+  void go_home();
+  std::array<double, 3> home_m(std::size_t module) const;
   void spread_and_land();
 
   /// A process ended by itself. A failure, unless someone meant it to.

@@ -8,6 +8,8 @@
 
 namespace eciton::deploy {
 
+inline constexpr int interrupted_status = 130;  // of a command that was asked to end
+
 using FlyFleet = std::function<void(const DemoOptions& resolved, const DemoFleet& fleet, Launches& launches)>;
 
 /// Throws BadInput when it cannot be planned or started.

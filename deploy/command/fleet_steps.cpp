@@ -68,11 +68,7 @@ void FleetFlight::arm_and_take_off() {
 void FleetFlight::hover_until_zeroed() {
   begin("hover, while the wrench observers are zeroed", DemoPhase::other);
   hover(settle_s);
-  for (std::size_t k = 0; k < ears_.size(); ++k) {
-    auto goal_m = fleet_.start_m[k];
-    goal_m[2] = height_m;
-    ears_[k]->set_goal(goal_m);
-  }
+  for (std::size_t k = 0; k < ears_.size(); ++k) ears_[k]->set_goal(home_m(k));
   phase_ = DemoPhase::hovering;
   const auto zeroed = [](const auto& ear) { return ear->zeroed(); };
   wait_until([&] { return std::all_of(ears_.begin(), ears_.end(), zeroed); }, zero_timeout_s,
@@ -157,14 +153,21 @@ void FleetFlight::undock_all() {
   wait_until([&] { return std::all_of(ears_.begin(), ears_.end(), loose); }, 5, [] { return "a latch still holds"; });
 }
 
+std::array<double, 3> FleetFlight::home_m(std::size_t k) const {
+  return {fleet_.start_m[k][0], fleet_.start_m[k][1], height_m};
+}
+
+void FleetFlight::go_home() {
+  finish(for_each_module(
+             [&](std::uint32_t id, std::size_t k) { return operator_.go_to(id, home_m(k), 0, home_speed_m_s); }),
+         flight_timeout_s);
+}
+
 void FleetFlight::spread_and_land() {
   begin("go back and hover", DemoPhase::other);
-  const auto home = [&](std::size_t k) { return std::array{fleet_.start_m[k][0], fleet_.start_m[k][1], height_m}; };
-  finish(for_each_module(
-             [&](std::uint32_t id, std::size_t k) { return operator_.go_to(id, home(k), 0, home_speed_m_s); }),
-         flight_timeout_s);
+  go_home();
   hover(settle_s);
-  for (std::size_t k = 0; k < ears_.size(); ++k) ears_[k]->set_goal(home(k));
+  for (std::size_t k = 0; k < ears_.size(); ++k) ears_[k]->set_goal(home_m(k));
   phase_ = DemoPhase::hovering;
   hover(1.5);
   for (const auto& ear : ears_) ear->set_goal(std::nullopt);

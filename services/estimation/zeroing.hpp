@@ -1,8 +1,8 @@
 // The wrench observer's bias, measured in free hover before docking: a 5 % error of the thrust scale reads as
 // 1.5 to 2 N of false contact force, and control on un-zeroed wrenches is worse than none. The model's errors are
-// fitted to means over batches by least squares, weighed by what is known of them before (Gauss-Markov): six numbers
-// a level hover cannot tell, such as the height of the centre of mass, stay as likely as they were, and a hover at
-// other attitudes tells them.
+// fitted to means over batches by least squares, weighed by what is known of them before (Gauss-Markov). What
+// a level hover cannot tell, such as the height of the centre of mass, stays as likely as it was; a hover at other
+// attitudes tells it.
 #pragma once
 
 #include <array>

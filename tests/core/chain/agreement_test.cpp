@@ -66,6 +66,17 @@ class AgreementTest : public testing::Test {
       for (std::uint32_t from = 1; from <= modules.size(); ++from) hear(to, from);
     }
   }
+  void rounds(int count) {
+    for (int k = 0; k < count; ++k) round();
+  }
+  /// So many modules, of which 1 and 2 fly as a pair; its epoch.
+  std::uint64_t create_pair_among(std::uint32_t n) {
+    create(n);
+    round();
+    link(1, 2);
+    rounds(20);
+    return active_epoch(1);
+  }
   void set_fresh(std::uint32_t at, std::uint32_t peer, bool fresh) {
     for (PeerStatus& status : module(at).peers) {
       if (status.module == peer) status.fresh = fresh;
@@ -146,7 +157,7 @@ TEST_F(AgreementTest, WaitsAtMostAMarginWhateverItThinksOfTheClock) {
   round();
   round();
   round();  // 2 has heard the start
-  for (int k = 0; k < 10; ++k) round();
+  rounds(10);
   EXPECT_NE(active_epoch(2), 0u);
 }
 
@@ -188,22 +199,18 @@ TEST_F(AgreementTest, PassesTheStartOnWhenTheBaseIsNotHeard) {
 }
 
 TEST_F(AgreementTest, DoesNotDecideWhileAMemberIsSilentAndFliesTheViewBefore) {
-  create(3);
-  round();
-  link(1, 2);
-  for (int k = 0; k < 20; ++k) round();
-  const std::uint64_t pair = active_epoch(1);
+  const std::uint64_t pair = create_pair_among(3);
   ASSERT_NE(pair, 0u);
   set_fresh(2, 3, false);
   link(2, 3);
-  for (int k = 0; k < 50; ++k) round();
+  rounds(50);
   EXPECT_EQ(active_epoch(1), pair);
   EXPECT_EQ(active_epoch(2), pair);
   EXPECT_EQ(active_epoch(3), 0u);
   EXPECT_EQ(module(2).agreement.obstacle(), Obstacle::member_silent);
   EXPECT_EQ(module(2).agreement.obstacle_module(), 3u);
   set_fresh(2, 3, true);
-  for (int k = 0; k < 20; ++k) round();
+  rounds(20);
   EXPECT_NE(active_epoch(3), 0u);
   EXPECT_EQ(active_epoch(1), active_epoch(3));
 }
@@ -214,7 +221,7 @@ TEST_F(AgreementTest, FollowsAMemberThatIsActiveEvenIfAnotherIsSilentHere) {
   set_fresh(1, 3, false);
   link(1, 2);
   link(2, 3);
-  for (int k = 0; k < 20; ++k) round();
+  rounds(20);
   EXPECT_NE(active_epoch(2), 0u);
   EXPECT_EQ(active_epoch(1), active_epoch(2));
 }
@@ -227,19 +234,15 @@ TEST_F(AgreementTest, DoesNotStartWithASilentMemberThatNobodyHasSeenActive) {
   round();  // decided
   set_fresh(1, 2, false);
   set_fresh(2, 1, false);
-  for (int k = 0; k < 50; ++k) round();
+  rounds(50);
   EXPECT_EQ(active_epoch(1), 0u);
   EXPECT_EQ(active_epoch(2), 0u);
 }
 
 TEST_F(AgreementTest, KeepsTheActiveViewThroughSilence) {
-  create(2);
-  round();
-  link(1, 2);
-  for (int k = 0; k < 20; ++k) round();
-  const std::uint64_t pair = active_epoch(1);
+  const std::uint64_t pair = create_pair_among(2);
   set_fresh(1, 2, false);
-  for (int k = 0; k < 1000; ++k) round();
+  rounds(1000);
   EXPECT_EQ(active_epoch(1), pair);
   EXPECT_EQ(module(1).agreement.freshness_of(2, module(1).peers), Freshness::silent);
 }
@@ -249,43 +252,35 @@ TEST_F(AgreementTest, AgreesAnewWhenAMemberWithdraws) {
   round();
   link(1, 2);
   link(2, 3);
-  for (int k = 0; k < 20; ++k) round();
+  rounds(20);
   const std::uint64_t all = active_epoch(1);
   tell_all({.module = 3, .port = 1, .incarnation = 1, .sequence_number = 99});
   round();
   EXPECT_EQ(active_epoch(3), 0u) << "a single module needs nobody's agreement";
   EXPECT_EQ(active_epoch(1), all);
   EXPECT_EQ(module(1).agreement.freshness_of(3, module(1).peers), Freshness::left);
-  for (int k = 0; k < 20; ++k) round();
+  rounds(20);
   EXPECT_NE(active_epoch(1), all);
   EXPECT_EQ(active_epoch(1), active_epoch(2));
   EXPECT_EQ(module(1).agreement.active()->members.size(), 2u);
 }
 
 TEST_F(AgreementTest, KeepsTheActiveViewWhenTheLinksCloseToARing) {
-  create(2);
-  round();
-  link(1, 2);
-  for (int k = 0; k < 20; ++k) round();
-  const std::uint64_t pair = active_epoch(1);
+  const std::uint64_t pair = create_pair_among(2);
   link(2, 1);
-  for (int k = 0; k < 20; ++k) round();
+  rounds(20);
   EXPECT_EQ(active_epoch(1), pair);
   EXPECT_EQ(module(1).agreement.obstacle(), Obstacle::structure_refused);
   EXPECT_EQ(module(1).agreement.refusal(), Refusal::ring);
 }
 
 TEST_F(AgreementTest, TakesNothingFromAModuleThatComesBackAsItsOldIncarnation) {
-  create(3);
-  round();
-  link(1, 2);
-  for (int k = 0; k < 20; ++k) round();
-  const std::uint64_t pair = active_epoch(1);
+  const std::uint64_t pair = create_pair_among(3);
   ASSERT_NE(pair, 0u);
   // 2 comes back counting from the start under the same incarnation: its words are older than what stands.
   restart(2, 1);
   for (std::uint32_t port = 0; port < 2; ++port) tell_all({.module = 2, .port = port, .incarnation = 1});
-  for (int k = 0; k < 50; ++k) round();
+  rounds(50);
   EXPECT_EQ(active_epoch(1), pair) << "an old word undid a link";
   EXPECT_EQ(module(1).agreement.held()->epoch, pair);
   EXPECT_EQ(active_epoch(2), 0u);
@@ -294,32 +289,28 @@ TEST_F(AgreementTest, TakesNothingFromAModuleThatComesBackAsItsOldIncarnation) {
   restart(2, 2);
   module(2).claims.join(module(1).claims);
   tell_all({.module = 2, .port = 0, .incarnation = 2, .sequence_number = 1});
-  for (int k = 0; k < 20; ++k) round();
+  rounds(20);
   EXPECT_FALSE(module(2).agreement.active());
   EXPECT_EQ(active_epoch(1), pair);
   tell_all({2, 1, 1, 0, false, LatchStatus::latched, 2, 2});
-  for (int k = 0; k < 20; ++k) round();
+  rounds(20);
   EXPECT_NE(active_epoch(1), pair);
   EXPECT_EQ(module(1).agreement.active(), module(2).agreement.active());
   EXPECT_EQ(module(1).agreement.active()->members.size(), 2u);
 }
 
 TEST_F(AgreementTest, FliesNoLinkThatOneLatchContradicts) {
-  create(3);
-  round();
-  link(1, 2);
-  for (int k = 0; k < 20; ++k) round();
-  const std::uint64_t pair = active_epoch(1);
+  const std::uint64_t pair = create_pair_among(3);
   // 3 claims the port that 1 is in, and one that is open: neither latch bears it out.
   tell_all({3, 0, 2, 1, false, LatchStatus::latched, 1, 1});
   tell_all({3, 1, 2, 0, false, LatchStatus::latched, 1, 2});
-  for (int k = 0; k < 20; ++k) round();
+  rounds(20);
   EXPECT_EQ(active_epoch(1), pair);
   EXPECT_EQ(active_epoch(2), pair);
   EXPECT_EQ(active_epoch(3), 0u);
   // A claim whose own latch is not closed holds nothing, whatever it names.
   tell_all({2, 0, 3, 1, false, LatchStatus::ready, 1, 50});
-  for (int k = 0; k < 20; ++k) round();
+  rounds(20);
   EXPECT_EQ(module(2).agreement.active()->members.size(), 2u);
   EXPECT_EQ(active_epoch(3), 0u);
 }
@@ -328,7 +319,7 @@ TEST_F(AgreementTest, AnnouncesOnlyWhatChanged) {
   create(2);
   round();
   const std::uint64_t sequence = module(1).agreement.announcement().sequence_number;
-  for (int k = 0; k < 100; ++k) round();
+  rounds(100);
   EXPECT_EQ(module(1).agreement.announcement().sequence_number, sequence);
 }
 
