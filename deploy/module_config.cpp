@@ -32,6 +32,7 @@ void set_wall_pace(ModuleConfig& config) {
   config.radio.period_s = 0.002;
   config.docking.rate_Hz = 500;
   config.docking.start_margin_s = 0.05;
+  config.radio.watches = config.docking.watches = true;
 }
 
 }  // namespace

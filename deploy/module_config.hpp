@@ -56,6 +56,7 @@ struct ModuleConfig {
   RingConfig module_ring;                      // domain 0: 10 + id
   RingConfig swarm_ring{1, "lo", {}};
   double lease_s = 3;
+  double watchdog_s = 0.4;    // a process that has not stepped for so long hangs, and is started again; 0: it is left
   int realtime_priority = 0;  // SCHED_FIFO; 0: leave it
   HardwareConfig hal;
   estimation::EstimationConfig estimation;
@@ -76,6 +77,7 @@ struct ModuleConfig {
     v("module_ring", module_ring);
     v("swarm_ring", swarm_ring);
     v("lease_s", lease_s, in_range(0.5, 60));
+    v("watchdog_s", watchdog_s, in_range(0, 60));
     v("realtime_priority", realtime_priority, in_range(0, 90));
     v("hal", hal);
     v("estimation", estimation);

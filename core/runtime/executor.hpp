@@ -19,6 +19,9 @@ class Executor {
   /// Steps the services on the calling thread until told to stop.
   virtual void run(const StopFlag& stop) = 0;
 
+  /// As ServiceGroup::find_idle: for a watchdog, from when all are added.
+  std::string_view find_idle() noexcept { return group_.find_idle(); }
+
   const ServiceGroup& group() const { return group_; }
 
  protected:

@@ -23,6 +23,7 @@ void RealtimeExecutor::run(const StopFlag& stop) {
     step_what_is_due();
     listens ? sleeper.until(group_.next_due()) : sleeper.until_undisturbed(group_.next_due());
   }
+  group_.say_farewell(wall_now());
 }
 
 void RealtimeExecutor::step_what_is_due() noexcept {

@@ -125,6 +125,7 @@ Pace ServiceGroup::step(Entry& entry, Pace at, TimePoint now) noexcept {
   const bool measured = pacing_ != Pacing::simulated;
   const Duration before = measured ? monotonic_now() : Duration::zero();
   entry.service->step(now);
+  entry.steps.turn();
   const Duration execution = measured ? monotonic_now() - before : Duration::zero();
   entry.statistics.record(at, execution);
   if (entry.triggered()) {
@@ -163,6 +164,23 @@ void ServiceGroup::beat_if_due(Pace at, TimePoint now) noexcept {
   for (const auto& entry : entries_) {
     if (entry->checkpoint) entry->checkpoint->save();
   }
+}
+
+void ServiceGroup::say_farewell(TimePoint now) noexcept {
+  if (!heartbeat_) return;
+  for (const auto& entry : entries_) {
+    entry->heartbeat.stamp_ns = to_ns(now);
+    entry->heartbeat.lifecycle = msg::Lifecycle::finalized;
+    heartbeat_->write(entry->heartbeat);
+  }
+}
+
+std::string_view ServiceGroup::find_idle() noexcept {
+  for (const auto& entry : entries_) {
+    if (!entry->suspended && !entry->steps.has_turned()) return entry->service->name();
+  }
+  for (const auto& entry : entries_) entry->steps.note();
+  return {};
 }
 
 Pace ServiceGroup::next_step_due() const noexcept {

@@ -12,6 +12,7 @@
 #include "core/runtime/checkpoint.hpp"
 #include "core/runtime/cycle_statistics.hpp"
 #include "core/runtime/service.hpp"
+#include "core/runtime/watchdog.hpp"
 
 namespace eciton::runtime {
 
@@ -39,6 +40,7 @@ class ServiceGroup {
     Pace next_due{};         // the next step of a periodic service; when a triggered one has waited long enough
     std::uint64_t news = 0;  // of its trigger, when it last stepped
     bool suspended = false;  // neither steps nor beats: a hang, for tests of failures
+    LoopProgress steps;
     CycleStatistics statistics;
     msg::Heartbeat heartbeat;  // what does not change is filled in
     std::unique_ptr<Checkpoint> checkpoint;
@@ -70,8 +72,14 @@ class ServiceGroup {
   bool due(Entry& entry, Pace at) noexcept;
   /// Steps it, as module time `now`; returns when the step ended (simulated: `at`). Real-time safe if the service is.
   Pace step(Entry& entry, Pace at, TimePoint now) noexcept;
+  /// For a watchdog, from its thread, while nothing is added or removed: a service that has not stepped since this
+  /// last found none; empty: all have.
+  std::string_view find_idle() noexcept;
   /// Publishes a heartbeat of every service, and hands its state to its checkpoint, if it is time. Real-time safe.
   void beat_if_due(Pace at, TimePoint now) noexcept;
+
+  /// A last heartbeat of every service, that says so: those who listen wait for no further one.
+  void say_farewell(TimePoint now) noexcept;
 
   /// When something falls due by time alone; with heartbeats, or without.
   Pace next_due() const noexcept;

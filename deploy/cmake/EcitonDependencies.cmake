@@ -15,7 +15,13 @@ find_package(benchmark REQUIRED)
 find_program(ECITON_FASTDDSGEN fastddsgen REQUIRED)
 find_program(ECITON_IDLC idlc REQUIRED)
 
-# MuJoCo's package brings no CMake files.
+# These packages bring no CMake files.
+find_path(ECITON_SYSTEMD_INCLUDE systemd/sd-daemon.h REQUIRED)
+find_library(ECITON_SYSTEMD_LIBRARY systemd REQUIRED)
+add_library(eciton_systemd INTERFACE)
+target_include_directories(eciton_systemd SYSTEM INTERFACE ${ECITON_SYSTEMD_INCLUDE})
+target_link_libraries(eciton_systemd INTERFACE ${ECITON_SYSTEMD_LIBRARY})
+
 find_path(ECITON_MUJOCO_INCLUDE mujoco/mujoco.h REQUIRED)
 find_library(ECITON_MUJOCO_LIBRARY mujoco REQUIRED)
 add_library(eciton_mujoco INTERFACE)

@@ -1,6 +1,7 @@
-// Listens on one module's ring: the newest heartbeat of each service, and the module's states.
+// Listens on one module's ring: the newest heartbeat of each service, the module's states, and its last faults.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,6 +18,8 @@ struct HeardHeartbeat {
 
 class ModuleEar {
  public:
+  static constexpr std::size_t faults_kept = 5;
+
   explicit ModuleEar(const bus::ParticipantConfig& config);
 
   /// Takes what is there.
@@ -27,6 +30,12 @@ class ModuleEar {
   const std::optional<msg::ModuleState>& state() const { return state_; }
   const std::optional<msg::DockingState>& docking() const { return docking_; }
   const std::optional<msg::ChainView>& view() const { return view_; }
+  /// The last ones, in the order of their stamps.
+  const std::deque<msg::Fault>& faults() const { return faults_; }
+  /// Of severity error, the kept ones and those before, as far back as their writers keep them.
+  std::size_t errors() const { return errors_; }
+  /// By the module's own clock, as its newest heartbeat has it.
+  Duration age_of(std::int64_t stamp_ns) const;
   /// As control says in its heartbeat.
   std::optional<msg::FlightMode> flight_mode() const;
 
@@ -36,10 +45,13 @@ class ModuleEar {
   bus::Reader<msg::ModuleState> state_reader_;
   bus::Reader<msg::DockingState> docking_reader_;
   bus::Reader<msg::ChainView> view_reader_;
+  bus::Reader<msg::Fault> fault_reader_;
   std::map<std::string, HeardHeartbeat> heartbeats_;
   std::optional<msg::ModuleState> state_;
   std::optional<msg::DockingState> docking_;
   std::optional<msg::ChainView> view_;
+  std::deque<msg::Fault> faults_;
+  std::size_t errors_ = 0;
 };
 
 /// The IDL's name of an enumerator.

@@ -84,11 +84,20 @@ std::vector<Watched> listen(const StatusOptions& options, const std::vector<Runn
   }
 }
 
-std::uint32_t restarts_of(const RunningModule& module, std::uint32_t pid) {
+/// The process that a service runs in, by what its supervisor wrote down.
+RunningProcess process_of(const RunningModule& module, std::uint32_t pid) {
   for (const RunningProcess& process : module.processes) {
-    if (process.pid == static_cast<pid_t>(pid)) return process.restarts;
+    if (process.pid == static_cast<pid_t>(pid)) return process;
   }
-  return 0;
+  return {};
+}
+
+/// "0.002 s", "3.4 s", "95 s": how long ago that was, at a glance.
+std::string ago(Duration age) {
+  char text[32];
+  const double s = to_s(age);
+  std::snprintf(text, sizeof text, s < 0.1 ? "%.3f s" : s < 10 ? "%.1f s" : "%.0f s", s);
+  return text;
 }
 
 std::string chain_text(const msg::ChainView& view) {
@@ -109,10 +118,13 @@ void print_states(const Watched& w) {
     return;
   }
   const auto mode = w.ear->flight_mode();
+  const auto with_age = [&](const std::string& what, const auto& sample) {
+    return what + " (" + ago(w.ear->age_of(sample->stamp_ns)) + ")";
+  };
   std::printf("  flight %s, estimator %s, docking %s, %s\n", mode ? name_of(*mode).c_str() : "unknown",
-              w.ear->state() ? name_of(w.ear->state()->mode).c_str() : "unknown",
-              w.ear->docking() ? name_of(w.ear->docking()->phase).c_str() : "unknown",
-              w.ear->view() ? chain_text(*w.ear->view()).c_str() : "chain unknown");
+              w.ear->state() ? with_age(name_of(w.ear->state()->mode), w.ear->state()).c_str() : "unknown",
+              w.ear->docking() ? with_age(name_of(w.ear->docking()->phase), w.ear->docking()).c_str() : "unknown",
+              w.ear->view() ? with_age(chain_text(*w.ear->view()), w.ear->view()).c_str() : "chain unknown");
 }
 
 void print_services(const Watched& w) {
@@ -125,12 +137,35 @@ void print_services(const Watched& w) {
     std::printf("  %-12s %-11s %8u %8.0f %10.2f %10.0f %10.0f %10.0f %9llu %8llu %8u\n", service.c_str(),
                 b.vendor.c_str(), b.pid, 1e3 * to_s(now - heard.arrived), 1e3 * b.period_s, 1e6 * b.jitter_s_p99,
                 1e6 * b.execution_s_mean, 1e6 * b.execution_s_max, static_cast<unsigned long long>(b.overruns),
-                static_cast<unsigned long long>(b.dropped), restarts_of(w.module, b.pid));
+                static_cast<unsigned long long>(b.dropped), process_of(w.module, b.pid).restarts);
   }
   for (const auto& [service, heard] : w.ear->heartbeats()) {
     if (heard.beat.rejected == 0) continue;
     std::printf("  %s refused %llu bad samples since its start: `eciton topic echo fault` says which\n",
                 service.c_str(), static_cast<unsigned long long>(heard.beat.rejected));
+  }
+}
+
+void print_restarts(const RunningModule& module) {
+  for (const RunningProcess& process : module.processes) {
+    if (process.restarts == 0) continue;
+    std::printf("  %s was started again %u times, %u of them after it hung; the last time after: %s\n",
+                process.name.c_str(), process.restarts, process.hangs, process.last_end.c_str());
+  }
+}
+
+std::string fault_text(const msg::Fault& fault) {
+  std::string text = std::string(fault.service.view());
+  if (!fault.device.empty()) text += " (" + std::string(fault.device.view()) + ")";
+  return text + ": " + std::string(fault.text.view());
+}
+
+void print_faults(const Watched& w) {
+  if (w.ear->faults().empty()) return;
+  std::printf("  errors: %zu; the last faults:\n", w.ear->errors());
+  for (const msg::Fault& fault : w.ear->faults()) {
+    std::printf("  %10s ago  %-8s %s\n", ago(w.ear->age_of(fault.stamp_ns)).c_str(), name_of(fault.severity).c_str(),
+                fault_text(fault).c_str());
   }
 }
 
@@ -153,20 +188,33 @@ bool print_silent(const Watched& w) {
 }
 
 Json module_json(const Watched& w) {
-  Json json{{"name", w.module.name},
-            {"id", w.module.module_id},
-            {"domain", w.module.domain},
-            {"holder_pid", w.module.holder},
-            {"heartbeats", Json::array()}};
+  Json json{{"name", w.module.name},         {"id", w.module.module_id},    {"domain", w.module.domain},
+            {"holder_pid", w.module.holder}, {"heartbeats", Json::array()}, {"processes", Json::array()},
+            {"errors", w.ear->errors()},     {"faults", Json::array()}};
   for (const auto& [service, heard] : w.ear->heartbeats()) {
     Json beat = to_json(heard.beat);
     beat["age_s"] = to_s(monotonic_now() - heard.arrived);
-    beat["restarts"] = restarts_of(w.module, heard.beat.pid);
+    beat["restarts"] = process_of(w.module, heard.beat.pid).restarts;
     json["heartbeats"].push_back(beat);
   }
-  if (w.ear->state()) json["module_state"] = to_json(*w.ear->state());
-  if (w.ear->docking()) json["docking_state"] = to_json(*w.ear->docking());
-  if (w.ear->view()) json["chain_view"] = to_json(*w.ear->view());
+  for (const RunningProcess& process : w.module.processes) {
+    json["processes"].push_back({{"name", process.name},
+                                 {"vendor", process.vendor},
+                                 {"pid", process.pid},
+                                 {"restarts", process.restarts},
+                                 {"hangs", process.hangs},
+                                 {"last_end", process.last_end}});
+  }
+  const auto with_age = [&](const auto& sample) {
+    Json aged = to_json(sample);
+    aged["age_s"] = to_s(w.ear->age_of(sample.stamp_ns));
+    return aged;
+  };
+  for (const msg::Fault& fault : w.ear->faults()) json["faults"].push_back(with_age(fault));
+  if (const auto mode = w.ear->flight_mode()) json["flight_mode"] = name_of(*mode);
+  if (w.ear->state()) json["module_state"] = with_age(*w.ear->state());
+  if (w.ear->docking()) json["docking_state"] = with_age(*w.ear->docking());
+  if (w.ear->view()) json["chain_view"] = with_age(*w.ear->view());
   return json;
 }
 
@@ -181,6 +229,8 @@ int print_status(const StatusOptions& options) {
     print_states(w);
     print_services(w);
     all_well = print_silent(w) && all_well;
+    print_restarts(w.module);
+    print_faults(w);
     measurement.series["modules"].push_back(module_json(w));
   }
   for (const RunningModule& module : modules) {

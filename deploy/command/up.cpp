@@ -11,6 +11,7 @@
 
 #include "core/base/wall_clock.hpp"
 #include "core/runtime/stop_signal.hpp"
+#include "core/runtime/watchdog.hpp"
 #include "deploy/command/detach.hpp"
 #include "deploy/hangup.hpp"
 #include "deploy/module_config.hpp"
@@ -29,7 +30,7 @@ struct UpOptions {
 };
 
 constexpr Duration start_phase = std::chrono::seconds(2);  // in which a process says that its input is bad
-constexpr Duration pace = std::chrono::milliseconds(200);
+constexpr Duration pace = std::chrono::milliseconds(100);  // at which it looks for signs of life
 constexpr int bad_input_status = 2;
 
 std::vector<LaunchPlan> plan_all(const UpOptions& options) {
@@ -84,7 +85,15 @@ void print_started(const Launches& launches) {
 /// it does so only at a restart, the others fly on.
 int run_until_stopped(Launches& launches, const runtime::StopFlag& stop) {
   int status = 0;
+  runtime::LoopProgress turns;
+  // Under systemd it is watched as it watches the others.
+  const runtime::Watchdog watchdog([&] {
+    if (!turns.has_turned()) return std::string_view("up");
+    turns.note();
+    return std::string_view();
+  });
   while (!stop.requested() && !launches.empty()) {
+    turns.turn();
     std::set<const Launch*> half_started;
     watch(launches, {stop.file_descriptor()}, pace, [&](Launch& launch, const ChildReport& report) {
       const bool refused = report.state == ChildState::refused;
@@ -129,8 +138,8 @@ int bring_up(const UpOptions& options) {
 
 void add_up(CLI::App& app, Run& run) {
   const auto options = std::make_shared<UpOptions>();
-  CLI::App* sub =
-      app.add_subcommand("up", "run the processes of modules, restarting what ends, also when the terminal hangs up");
+  CLI::App* sub = app.add_subcommand(
+      "up", "run the processes of modules, restarting what ends or hangs, also when the terminal hangs up");
   sub->add_option("MODULE.yaml", options->files, "one file per module")->required();
   sub->add_option("--world", options->world_file, "a simulated world for them, as eciton-world takes it");
   sub->add_option("--set", options->assignments, "key=value, over all the files")->allow_extra_args(false);

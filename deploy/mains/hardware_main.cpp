@@ -7,6 +7,7 @@
 #include "core/runtime/lockstep_master.hpp"
 #include "core/runtime/realtime_thread.hpp"
 #include "core/runtime/service_group.hpp"
+#include "core/runtime/watchdog.hpp"
 #include "deploy/module.hpp"
 #include "deploy/program.hpp"
 #include "hal/sim/make_devices.hpp"
@@ -48,14 +49,23 @@ class SimulatedHost {
   void run() {
     group_.start(lockstep_ ? link_->board().sensors().stamp.time_since_epoch() : monotonic_now());
     while (!stop_.requested()) {
+      turns_.turn();
       const hal::Io io = link_->wait_sensors(std::chrono::milliseconds(100));
       if (io == hal::Io::error) {
         spdlog::info("the world has gone: {}", std::string(link_->end_reason()));
-        return;
+        break;
       }
       if (io != hal::Io::ok) continue;
       tick();
     }
+    group_.say_farewell(lockstep_ ? link_->board().sensors().stamp : wall_now());
+  }
+
+  /// For a watchdog. A world that sends nothing does not make the host idle.
+  std::string_view find_idle() noexcept {
+    if (!turns_.has_turned()) return "hardware";
+    turns_.note();
+    return {};
   }
 
  private:
@@ -105,6 +115,7 @@ class SimulatedHost {
   bus::ReaderCore* commands_ = nullptr;
   std::optional<runtime::LockstepMaster> master_;
   std::optional<runtime::Sleeper> sleeper_;
+  runtime::LoopProgress turns_;
 };
 
 int run(int argc, char** argv) {
@@ -121,6 +132,7 @@ int run(int argc, char** argv) {
     const runtime::RealtimeForNewThreads vendor_too(config.realtime_priority);
     host.emplace(config, stop);
   }
+  const runtime::Watchdog watchdog([&] { return host->find_idle(); });
   if (config.realtime_priority > 0) {
     if (const auto missing = runtime::make_realtime(config.realtime_priority)) spdlog::warn("{}", *missing);
   }

@@ -8,6 +8,7 @@
 #include "core/runtime/lockstep_executor.hpp"
 #include "core/runtime/realtime_executor.hpp"
 #include "core/runtime/realtime_thread.hpp"
+#include "core/runtime/watchdog.hpp"
 #include "deploy/module.hpp"
 #include "deploy/program.hpp"
 
@@ -55,6 +56,7 @@ int run(int argc, char** argv) {
                                        .checkpoints = options.checkpoints},
                                       participants);
   for (const auto& service : services) executor->add(*service);
+  const runtime::Watchdog watchdog([&] { return executor->find_idle(); });
   executor->run(stop);
   return 0;
 }

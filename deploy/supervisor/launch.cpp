@@ -14,6 +14,15 @@ namespace eciton::deploy {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+std::string end_text(const ChildReport& report) {
+  if (!report.last_end) return {};
+  return report.hung ? "it hung" : report.last_end->text();
+}
+
+}  // namespace
+
 fs::path program_directory() {
   std::error_code failed;
   return fs::read_symlink("/proc/self/exe", failed).parent_path();
@@ -73,7 +82,9 @@ void Launch::write_state() {
     state.processes.push_back({.name = plan_.processes[k].name,
                                .vendor = plan_.processes[k].vendor,
                                .pid = reports[k].state == ChildState::running ? reports[k].pid : 0,
-                               .restarts = reports[k].restarts});
+                               .restarts = reports[k].restarts,
+                               .hangs = reports[k].hangs,
+                               .last_end = end_text(reports[k])});
   }
   const std::string text = to_text(state);
   if (text == written_state_) return;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/base/wall_clock.hpp"
+
 namespace eciton::deploy {
 
 Result<Launches> claim_all(const std::vector<LaunchPlan>& plans) {
@@ -31,15 +33,20 @@ void watch(Launches& launches, const std::vector<int>& extra_descriptors, Durati
            const std::function<void(Launch&, const ChildReport&)>& on_end) {
   std::vector<pollfd> descriptors;
   for (const int fd : extra_descriptors) descriptors.push_back({fd, POLLIN, 0});
-  for (const auto& launch : launches) launch->supervisor().add_descriptors(descriptors);
-  wait_for(descriptors, timeout);
+  Duration wait = timeout;
+  for (const auto& launch : launches) {
+    launch->supervisor().add_descriptors(descriptors);
+    if (const auto restart = launch->supervisor().next_restart()) wait = std::min(wait, *restart - monotonic_now());
+  }
+  wait_for(descriptors, wait);
   for (const auto& launch : launches) {
     launch->check([&](const ChildReport& report) { on_end(*launch, report); });
   }
 }
 
 std::string describe(const Launch& launch, const ChildReport& report) {
-  std::string text = launch.plan().name + "/" + report.name + ": it ended with " + report.last_end->text();
+  std::string text = launch.plan().name + "/" + report.name + ": ";
+  text += report.hung ? "it hung and was killed" : "it ended with " + report.last_end->text();
   if (!report.last_words.empty()) text += ": " + report.last_words;
   return text;
 }

@@ -20,7 +20,7 @@ Status start_all(Launches& launches);
 /// Asks all their processes to end, then waits for them side by side; directories and claims stay.
 void stop_all(Launches& launches);
 
-/// Waits for an end of a process, a readable extra descriptor or `timeout`, then checks all launches.
+/// Waits for an end of a process, a due restart, a readable extra descriptor or `timeout`, then checks all launches.
 void watch(Launches& launches, const std::vector<int>& extra_descriptors, Duration timeout,
            const std::function<void(Launch&, const ChildReport&)>& on_end);
 

@@ -35,6 +35,8 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
       .network_interface = config.module_ring.network_interface,
       .claims = {"module id " + std::to_string(config.id), "DDS domain " + std::to_string(config.module_ring.domain)},
       .processes = {}};
+  // In lockstep nothing hangs on its own: the world waits for the slowest.
+  const Duration watchdog = config.clock == "wall" ? from_s(config.watchdog_s) : Duration::zero();
   plan.processes.push_back(
       plan_process("hardware", config, programs / "eciton-hardware", config_file, assignments, {}));
   const std::vector<std::string> all(service_names.begin(), service_names.end());
@@ -45,6 +47,7 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
     // In lockstep nothing is restarted: the world waits for the dead.
     plan.processes.back().has_checkpoints = config.clock == "wall";
   }
+  for (PlannedProcess& process : plan.processes) process.child.watchdog = watchdog;
   return plan;
 }
 

@@ -21,7 +21,9 @@ RunningModule from_json(const Json& json) {
     module.processes.push_back({.name = process.at("name"),
                                 .vendor = process.at("vendor"),
                                 .pid = process.at("pid"),
-                                .restarts = process.at("restarts")});
+                                .restarts = process.at("restarts"),
+                                .hangs = process.at("hangs"),
+                                .last_end = process.at("last_end")});
   }
   return module;
 }
@@ -31,8 +33,12 @@ RunningModule from_json(const Json& json) {
 std::string to_text(const RunningModule& module) {
   Json processes = Json::array();
   for (const RunningProcess& process : module.processes) {
-    processes.push_back(
-        {{"name", process.name}, {"vendor", process.vendor}, {"pid", process.pid}, {"restarts", process.restarts}});
+    processes.push_back({{"name", process.name},
+                         {"vendor", process.vendor},
+                         {"pid", process.pid},
+                         {"restarts", process.restarts},
+                         {"hangs", process.hangs},
+                         {"last_end", process.last_end}});
   }
   const Json json{{"name", module.name},
                   {"holder", module.holder},

@@ -18,6 +18,8 @@ struct RunningProcess {
   std::string vendor;
   pid_t pid = 0;  // 0: it does not run at the moment
   std::uint32_t restarts = 0;
+  std::uint32_t hangs = 0;  // of those restarts, after a hang
+  std::string last_end{};   // "signal 9 (Killed)"; empty: it never ended
 };
 
 struct RunningModule {

@@ -1,4 +1,4 @@
-// Start, watch, restart, stop.
+// Start, listen, kill, restart, stop.
 #include "deploy/supervisor/supervisor.hpp"
 
 #include <algorithm>
@@ -18,6 +18,17 @@ Duration monotonic() {
   return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
 }
 
+/// What sd_notify(3) and sd_watchdog_enabled(3) ask for; nothing of our own supervisor's.
+std::vector<std::pair<std::string, std::string>> environment_of(const ChildSpec& spec,
+                                                                const std::optional<NotifySocket>& notify) {
+  auto environment = spec.environment;
+  const auto limit_us = std::chrono::duration_cast<std::chrono::microseconds>(spec.watchdog).count();
+  environment.emplace_back("NOTIFY_SOCKET", notify ? notify->path().string() : "");
+  environment.emplace_back("WATCHDOG_USEC", notify ? std::to_string(limit_us) : "");
+  environment.emplace_back("WATCHDOG_PID", "");
+  return environment;
+}
+
 }  // namespace
 
 Supervisor::Supervisor(SupervisorConfig config, Clock clock)
@@ -29,18 +40,25 @@ Status Supervisor::start(const ChildSpec& spec) {
   auto child = std::make_unique<Child>();
   child->spec = spec;
   child->report.name = spec.name;
-  child->backoff = config_.backoff_min;
+  if (spec.watchdog > Duration::zero()) {
+    Result<NotifySocket> notify = NotifySocket::open(config_.log_directory / (spec.name + ".notify"));
+    if (!notify) return notify.error();
+    child->notify.emplace(std::move(notify).value());
+  }
   if (const Status status = launch(*child); !status) return status;
   children_.push_back(std::move(child));
   return ok();
 }
 
 Status Supervisor::launch(Child& child) {
+  if (child.notify) child.notify->take();  // the last words of the one before
   Result<ChildProcess> process = ChildProcess::start({.arguments = child.spec.arguments,
-                                                      .environment = child.spec.environment,
+                                                      .environment = environment_of(child.spec, child.notify),
                                                       .log_file = log_file(child.spec.name),
                                                       .network_namespace = child.spec.network_namespace});
   if (!process) return process.error();
+  child.ready = child.stopping = child.killed = false;
+  child.silent = {};
   child.process.emplace(std::move(process).value());
   child.report.pid = child.process->pid();
   child.report.state = ChildState::running;
@@ -52,6 +70,8 @@ void Supervisor::note_end(Child& child, const ProcessEnd& end) {
   const Duration now = clock_();
   child.process.reset();
   child.report.last_end = end;
+  child.report.hung = child.killed;
+  if (child.killed) ++child.report.hangs;
   const auto lines = last_lines(log_file(child.spec.name), 1);
   child.report.last_words = lines.empty() ? "" : lines.back();
   if (end.signal == 0 && end.exit_status == bad_input) {
@@ -59,17 +79,39 @@ void Supervisor::note_end(Child& child, const ProcessEnd& end) {
     return;
   }
   child.report.state = ChildState::waiting;
-  // What ran long enough is needed back at once; what keeps ending waits longer each time.
-  const bool steady = now - child.started >= config_.steady;
-  child.restart_at = steady ? now : now + child.backoff;
-  child.backoff = steady ? config_.backoff_min : std::min(2 * child.backoff, config_.backoff_max);
+  // What ends for the first time is needed back at once; what keeps ending waits longer each time.
+  if (now - child.started >= config_.steady) child.backoff = {};
+  child.restart_at = now + child.backoff;
+  child.backoff = std::clamp(2 * child.backoff, config_.backoff_min, config_.backoff_max);
+}
+
+void Supervisor::listen_to(Child& child, Duration since_last_check) {
+  if (!child.notify || child.killed) return;
+  const NotifySocket::Notices said = child.notify->take();
+  child.ready = child.ready || said.ready;
+  child.stopping = child.stopping || said.stopping;
+  if (said.ready || said.alive || said.stopping) {
+    child.silent = {};
+    return;
+  }
+  if (!child.ready) return;
+  child.silent += std::clamp(since_last_check, Duration::zero(), config_.silence_per_check_max);
+  if (child.silent <= (child.stopping ? config_.stop_patience : child.spec.watchdog)) return;
+  child.killed = true;
+  child.process->signal(SIGKILL);  // its end is taken when the kernel tells of it
 }
 
 void Supervisor::check(const std::function<void(const ChildReport&)>& on_end) {
+  const Duration begin = clock_();
+  const Duration since_last_check = begin - last_check_.value_or(begin);
+  last_check_ = begin;
   for (const auto& child : children_) {
     if (child->process) {
       const auto end = child->process->take_end();
-      if (!end) continue;
+      if (!end) {
+        listen_to(*child, since_last_check);
+        continue;
+      }
       note_end(*child, *end);
       if (on_end) on_end(child->report);
     } else if (child->report.state == ChildState::waiting && clock_() >= child->restart_at) {
@@ -102,7 +144,9 @@ void Supervisor::request_stop() {
   if (stop_requested_at_) return;
   stop_requested_at_ = monotonic();
   for (const auto& child : children_) {
-    if (child->process) child->process->signal(SIGTERM);
+    if (!child->process) continue;
+    child->process->signal(SIGTERM);
+    child->process->signal(SIGCONT);  // a stopped one hears nothing else
   }
 }
 

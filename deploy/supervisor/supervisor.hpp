@@ -1,5 +1,5 @@
-// Keeps a set of child processes running: restarts what ends, with a back-off; ends them all in a bounded
-// time. One thread; it never waits except in stop_all.
+// Keeps a set of child processes running: kills what hangs, restarts what ends, with a back-off; ends them all in a
+// bounded time. One thread; it never waits except in stop_all.
 #pragma once
 
 #include <poll.h>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "deploy/supervisor/child_process.hpp"
+#include "deploy/supervisor/notify_socket.hpp"
 
 namespace eciton::deploy {
 
@@ -21,14 +22,19 @@ struct ChildSpec {
   std::vector<std::string> arguments;
   std::vector<std::pair<std::string, std::string>> environment{};
   std::filesystem::path network_namespace{};  // empty: the supervisor's
+  Duration
+      watchdog{};  // one that once said READY=1 says WATCHDOG=1 as often (sd_notify(3)), or hangs; 0: may be mute
 };
 
 struct SupervisorConfig {
-  std::filesystem::path log_directory;
-  Duration backoff_min = std::chrono::milliseconds(250);  // doubles with each restart ...
-  Duration backoff_max = std::chrono::seconds(5);         // ... up to this
-  Duration steady = std::chrono::seconds(10);             // one that ran so long starts from backoff_min again
-  Duration stop_patience = std::chrono::seconds(5);       // from SIGTERM to SIGKILL
+  std::filesystem::path log_directory;  // of notify sockets too
+  Duration backoff_min =
+      std::chrono::milliseconds(250);                // the first restart comes at once, the second after this ...
+  Duration backoff_max = std::chrono::seconds(5);    // ... then it doubles with each, up to this
+  Duration steady = std::chrono::seconds(10);        // the next restart of one that ran so long is a first one
+  Duration stop_patience = std::chrono::seconds(5);  // from SIGTERM, or its own STOPPING=1, to SIGKILL
+  // A child's silence between two checks counts as at most this: what holds up the supervisor holds up others too.
+  Duration silence_per_check_max = std::chrono::milliseconds(100);
 };
 
 enum class ChildState {
@@ -43,6 +49,8 @@ struct ChildReport {
   ChildState state = ChildState::stopped;
   pid_t pid = 0;  // of the last start
   std::uint32_t restarts = 0;
+  std::uint32_t hangs = 0;
+  bool hung = false;  // the last end was our doing, for that
   std::optional<ProcessEnd> last_end;
   std::string last_words;  // the last line it wrote before it ended by itself
 };
@@ -59,7 +67,8 @@ class Supervisor {
   /// Starts one more child. An Error when its program cannot be executed.
   Status start(const ChildSpec& spec);
 
-  /// Looks after the children: takes ends, restarts what is due. Tells of every end through `on_end`.
+  /// Looks after the children: takes ends, kills what hangs, restarts what is due. Tells of every end through
+  /// `on_end`.
   void check(const std::function<void(const ChildReport&)>& on_end = {});
   /// What becomes readable when a child ends.
   void add_descriptors(std::vector<pollfd>& descriptors) const;
@@ -84,15 +93,22 @@ class Supervisor {
     Duration started{};
     Duration backoff{};
     Duration restart_at{};
+    std::optional<NotifySocket> notify;
+    bool ready = false;
+    bool stopping = false;
+    bool killed = false;
+    Duration silent{};
   };
 
   Status launch(Child& child);
+  void listen_to(Child& child, Duration since_last_check);
   void note_end(Child& child, const ProcessEnd& end);
 
   SupervisorConfig config_;
   Clock clock_;
   std::vector<std::unique_ptr<Child>> children_;
   std::optional<Duration> stop_requested_at_;
+  std::optional<Duration> last_check_;
 };
 
 /// Waits until one of the descriptors is readable or for `timeout`.

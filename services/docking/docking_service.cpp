@@ -28,18 +28,21 @@ DockingService::DockingService(bus::Participant& ring, const DockingServiceConfi
       follower_(config.sequence),
       target_(config.target),
       heard_(ring, config.module_id, airframe),
+      radio_watch_(config.module_id, "docking", from_s(1 / config.rate_Hz)),
       dock_goal_(ring.create_reader(topics::dock_goal)),
       contact_wrench_(ring.create_reader(topics::contact_wrench)),
       docking_reference_(ring.create_writer(topics::docking_reference)),
       latch_command_(ring.create_writer(topics::latch_command)),
       docking_state_(ring.create_writer(topics::docking_state)),
       goal_status_(ring.create_writer(topics::goal_status)),
-      event_(ring.create_writer(topics::event)) {}
+      event_(ring.create_writer(topics::event)),
+      fault_(ring.create_writer(topics::fault)) {}
 
 void DockingService::step(TimePoint now) noexcept {
   const double dt_s = first_step_ ? 0 : std::clamp(to_s(now - last_step_), 0.0, 0.1);
   if (first_step_) end_interrupted(now);
   heard_.take(now);
+  if (config_.watches) watch_radio(now);
   update_membership(now);
   update_base(now, dt_s);
   take_goals(now);
@@ -49,6 +52,12 @@ void DockingService::step(TimePoint now) noexcept {
   write_state(now);
   last_step_ = now;
   first_step_ = false;
+}
+
+void DockingService::watch_radio(TimePoint now) noexcept {
+  radio_watch_.begin(now);
+  if (heard_.radio_beat()) radio_watch_.hear(*heard_.radio_beat());
+  radio_watch_.tell(fault_);
 }
 
 const chain::View* DockingService::chain() const {

@@ -7,6 +7,7 @@
 
 #include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
+#include "core/runtime/heartbeat_watch.hpp"
 #include "core/runtime/service.hpp"
 #include "services/docking/chain_reference.hpp"
 #include "services/docking/dock_request.hpp"
@@ -29,6 +30,7 @@ struct DockingServiceConfig {
   double push_bias_s = 1.0;      // the push before contact, smoothed by this, counts as none
   bool require_zeroed = true;
   bool claims_muted = false;  // an experiment's control
+  bool watches = false;       // the radio, by its heartbeats: where these come by the wall clock
   DockingConfig sequence;
   TargetConfig target;
 
@@ -111,6 +113,7 @@ class DockingService final : public runtime::Service {
   void measure_push(const robot::Matrix3& R_WT, double dt_s) noexcept;
   void be_target(TimePoint now, double dt_s) noexcept;
   void accept_follower(TimePoint now) noexcept;
+  void watch_radio(TimePoint now) noexcept;
   void update_membership(TimePoint now) noexcept;
   void update_base(TimePoint now, double dt_s) noexcept;
   void write_reference(TimePoint now) noexcept;
@@ -125,6 +128,7 @@ class DockingService final : public runtime::Service {
   DockingSequence follower_;
   TargetSequence target_;
   HeardModules heard_;
+  runtime::HeartbeatWatch radio_watch_;
 
   Pairing pairing_;                                 // of the docking we follow or are the target of, or were last
   msg::DockingRole role_ = msg::DockingRole::none;  // in it
@@ -158,6 +162,7 @@ class DockingService final : public runtime::Service {
   bus::Writer<msg::DockingState> docking_state_;
   bus::Writer<msg::GoalStatus> goal_status_;
   bus::Writer<msg::Event> event_;
+  bus::Writer<msg::Fault> fault_;
 };
 
 }  // namespace eciton::docking

@@ -85,10 +85,11 @@ void HeardModules::take_conditions(TimePoint now) noexcept {
     m->flying = in_the_air(s->value.flight_mode);
     m->zeroed = m->zeroed || s->value.wrench_zeroed;
   }
+  radio_beat_.reset();
   while (const auto s = heartbeats_.take()) {
-    if (s->value.module_id == own_id_ && s->value.service == "control") {
-      modules_[0].flying = in_the_air(s->value.flight_mode);
-    }
+    if (s->value.module_id != own_id_) continue;
+    if (s->value.service == "control") modules_[0].flying = in_the_air(s->value.flight_mode);
+    if (s->value.service == "radio") radio_beat_ = s->value;
   }
 }
 

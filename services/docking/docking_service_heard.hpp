@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "core/bus/participant.hpp"
@@ -34,6 +35,8 @@ class HeardModules {
 
   std::span<const HeardModule> all() const { return modules_; }
   const HeardModule& own() const { return modules_[0]; }
+  /// Our own radio's, if one came with the last take.
+  const std::optional<msg::Heartbeat>& radio_beat() const { return radio_beat_; }
   /// Nothing when it was never heard.
   const HeardModule* find(std::uint32_t id) const noexcept;
   /// `near`: approaching or in a chain, when samples come often.
@@ -55,6 +58,8 @@ class HeardModules {
   std::uint32_t own_id_;
   robot::Airframe airframe_;
   std::array<HeardModule, bound> modules_{};  // ourselves first
+
+  std::optional<msg::Heartbeat> radio_beat_;
 
   bus::Reader<msg::ModuleState> module_states_;
   bus::Reader<msg::JointState> joint_states_;

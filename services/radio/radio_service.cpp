@@ -41,6 +41,7 @@ RadioService::RadioService(bus::Participant& ring, bus::Participant& swarm, cons
     : config_(config),
       ring_(ring),
       swarm_(swarm),
+      watch_(config.module_id, "radio", from_s(config.period_s)),
       airtime_({.budget_bit_s = config.airtime_budget_bit_s, .overhead_bytes = rtps_overhead_bytes}),
       docking_state_(ring.create_reader(topics::docking_state)),
       chain_view_(ring.create_reader(topics::chain_view)),
@@ -149,10 +150,7 @@ void RadioService::watch_own_module() noexcept {
   while (const auto wrench = external_wrench_.take()) {
     if (wrench->value.module_id == config_.module_id) beacon_.wrench_zeroed = wrench->value.zeroed;
   }
-  while (const auto beat = heartbeat_.take()) {
-    const msg::Heartbeat& b = beat->value;
-    if (b.module_id == config_.module_id && b.service == "control") beacon_.flight_mode = b.flight_mode;
-  }
+  take_heartbeats();
   const bool was_near = near_;
   near_ = docking_ || courted_ || chained_;
   // What peers decide by is told at once, not at the next beacon, and more than once: beacons may be lost.
@@ -161,6 +159,16 @@ void RadioService::watch_own_module() noexcept {
   if (!changed) return;
   beacon_due_ = std::min(beacon_due_, now_);
   urgent_beacons_ = 4;
+}
+
+void RadioService::take_heartbeats() noexcept {
+  watch_.begin(now_);
+  while (const auto beat = heartbeat_.take()) {
+    const msg::Heartbeat& b = beat->value;
+    if (b.module_id == config_.module_id && b.service == "control") beacon_.flight_mode = b.flight_mode;
+    if (config_.watches) watch_.hear(b);
+  }
+  watch_.tell(fault_);
 }
 
 void RadioService::hear_beacons(TimePoint now) noexcept {

@@ -9,6 +9,7 @@
 
 #include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
+#include "core/runtime/heartbeat_watch.hpp"
 #include "core/runtime/service.hpp"
 #include "idl/topics.hpp"
 #include "services/radio/airtime.hpp"
@@ -30,6 +31,7 @@ struct RadioConfig {
   double beacon_near_period_s = 0.5;    // approaching or in a chain
   double beacon_urgent_period_s = 0.1;  // of the few that follow a change
   double airtime_budget_bit_s = 6e6;    // of the radio's medium, what this module may use
+  bool watches = false;  // its module's services, by their heartbeats: where these come by the wall clock
 
   template <class V>
   void visit_fields(V& v) {
@@ -61,6 +63,7 @@ class RadioService final : public runtime::Service {
   void forward_out(Route& route) noexcept;
   void forward_in(Route& route) noexcept;
   void watch_own_module() noexcept;
+  void take_heartbeats() noexcept;
   void hear_beacons(TimePoint now) noexcept;
   void meet_own_id(const msg::Beacon& beacon, TimePoint now) noexcept;
   void send_beacon(TimePoint now) noexcept;
@@ -81,6 +84,7 @@ class RadioService final : public runtime::Service {
   bool chained_ = false;
   DuplicateId own_id_;
   bool duplicate_id_ = false;
+  runtime::HeartbeatWatch watch_;
   Airtime airtime_;
   std::uint64_t sent_ = 0;
   std::uint64_t dropped_ = 0;

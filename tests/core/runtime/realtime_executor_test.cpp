@@ -138,6 +138,13 @@ TEST_F(RealtimeExecutorTest, BeatsForEachServiceFromTheLoop) {
   EXPECT_EQ(of_fast->vendor.view(), "sim_network");
   EXPECT_GT(of_fast->period_s, 0);
   EXPECT_EQ(of_slow->cycles, 1u) << "beats do not wait for steps";
+  EXPECT_EQ(of_fast->lifecycle, msg::Lifecycle::active);
+  int farewells = 0;
+  for (const Duration end = monotonic_now() + 10s; monotonic_now() < end && farewells < 2;) {
+    while (const auto beat = beats.take()) farewells += beat->value.lifecycle == msg::Lifecycle::finalized;
+    if (farewells < 2) outside_->waker().wait(10ms);
+  }
+  EXPECT_EQ(farewells, 2) << "the last ones of an executor that was told to stop";
 }
 
 TEST_F(RealtimeExecutorTest, OneWakerServesTwoRings) {

@@ -68,6 +68,19 @@ TEST_F(ServiceGroupTest, OnTheWallClockASampleThatIsALittleLateIsNotPrecededByAT
   }
 }
 
+TEST_F(ServiceGroupTest, FindsAServiceThatHasNotSteppedSinceAllHad) {
+  ServiceGroup group({.heartbeat_period = 0ms}, {ring_.get()}, GroupPacing::wall_clock);
+  FakeService first("first", every(10ms, Phase::sense)), second("second", every(10ms, Phase::control));
+  auto& a = group.add(first);
+  auto& b = group.add(second);
+  EXPECT_EQ(group.find_idle(), "first");
+  group.step(a, 0ms, now);
+  EXPECT_EQ(group.find_idle(), "second");
+  group.step(b, 0ms, now);
+  EXPECT_EQ(group.find_idle(), "") << "one after the other counts";
+  EXPECT_EQ(group.find_idle(), "first");
+}
+
 TEST_F(ServiceGroupTest, SaysWhoseWakersDiffer) {
   static int violations = 0;
   violations = 0;

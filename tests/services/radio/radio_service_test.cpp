@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "core/bus/vendors/sim_network/sim_network.hpp"
 
@@ -202,6 +203,69 @@ TEST_F(RadioServiceTest, TellsItsServicesHowThePeersClocksStand) {
   EXPECT_NEAR(to_s(Duration{state->peers[0].offset_bound_ns}), to_s(round_trip) / 2, 0.011) << "a step of the radio";
   EXPECT_EQ(state->dropped, 0u);
   EXPECT_GT(state->sent, 200u);
+}
+
+/// A service of module 1 that beats, or does not, while the radio steps.
+class RadioWatchTest : public RadioServiceTest {
+ protected:
+  void start_watch(bool watches) {
+    RadioConfig config;
+    config.watches = watches;
+    Rings& rings = start(config);
+    beats_.emplace(rings.services.create_writer(topics::heartbeat));
+    faults_.emplace(rings.services.create_reader(topics::fault));
+  }
+  void beat_for(Duration span, msg::Lifecycle lifecycle = msg::Lifecycle::active) {
+    for (const TimePoint end = now_ + span; now_ < end;) {
+      msg::Heartbeat beat{.module_id = own_id, .service_key = 5, .stamp_ns = to_ns(now_), .service = "control"};
+      beat.lifecycle = lifecycle;
+      beats_->write(beat);
+      run(10ms);
+    }
+  }
+  std::vector<msg::Fault> told() {
+    std::vector<msg::Fault> faults;
+    while (const auto fault = faults_->take()) faults.push_back(fault->value);
+    return faults;
+  }
+
+  std::optional<bus::Writer<msg::Heartbeat>> beats_;
+  std::optional<bus::Reader<msg::Fault>> faults_;
+};
+
+TEST_F(RadioWatchTest, TellsOfAServiceThatFallsSilentAndOfItsReturn) {
+  start_watch(true);
+  beat_for(2s);
+  EXPECT_TRUE(told().empty());
+  run(200ms);
+  std::vector<msg::Fault> faults = told();
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].severity, msg::Severity::error);
+  EXPECT_EQ(faults[0].service.view(), "radio");
+  EXPECT_EQ(faults[0].device.view(), "control");
+  EXPECT_NE(faults[0].text.view().find("control has been silent for 50 ms"), std::string_view::npos)
+      << faults[0].text.view() << ": the first step of the radio, every 10 ms here, after 46 ms";
+  beat_for(50ms);
+  faults = told();
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].severity, msg::Severity::info);
+  EXPECT_NE(faults[0].text.view().find("control is back: it was silent for 0.2"), std::string_view::npos)
+      << faults[0].text.view();
+}
+
+TEST_F(RadioWatchTest, DoesNotMissAServiceThatSaidFarewell) {
+  start_watch(true);
+  beat_for(2s);
+  beat_for(10ms, msg::Lifecycle::finalized);
+  run(1s);
+  EXPECT_TRUE(told().empty());
+}
+
+TEST_F(RadioWatchTest, LooksAwayWhereHeartbeatsDoNotComeByTheWallClock) {
+  start_watch(false);
+  beat_for(2s);
+  run(1s);
+  EXPECT_TRUE(told().empty());
 }
 
 TEST_F(RadioServiceTest, IntroducesItsModuleOnce) {
