@@ -56,8 +56,9 @@ struct ModuleConfig {
   RingConfig module_ring;                      // domain 0: 10 + id
   RingConfig swarm_ring{1, "lo", {}};
   double lease_s = 3;
-  double watchdog_s = 0.4;    // a process that has not stepped for so long hangs, and is started again; 0: it is left
-  int realtime_priority = 0;  // SCHED_FIFO; 0: leave it
+  double watchdog_s = 0.4;  // a process that has not stepped for so long hangs, and is started again; 0: it is left
+  double hardware_watchdog_s = 0.08;  // the hardware host: after 50 ms without it the board stops the rotors
+  int realtime_priority = 0;          // SCHED_FIFO; 0: leave it
   HardwareConfig hal;
   estimation::EstimationConfig estimation;
   control::ControlConfig control;
@@ -78,6 +79,7 @@ struct ModuleConfig {
     v("swarm_ring", swarm_ring);
     v("lease_s", lease_s, in_range(0.5, 60));
     v("watchdog_s", watchdog_s, in_range(0, 60));
+    v("hardware_watchdog_s", hardware_watchdog_s, in_range(0, 60));
     v("realtime_priority", realtime_priority, in_range(0, 90));
     v("hal", hal);
     v("estimation", estimation);

@@ -21,7 +21,7 @@ int run_program(const std::string& name, const std::function<int()>& body) {
   }
 }
 
-ProgramOptions parse_options(int argc, char** argv, const std::string& purpose, bool with_names) {
+ProgramOptions parse_options(int argc, char** argv, const std::string& purpose, const ProgramTakes& takes) {
   ProgramOptions options;
   CLI::App app(purpose);
   app.add_option("--config", options.config_files, "YAML file; later ones override earlier ones")
@@ -29,8 +29,8 @@ ProgramOptions parse_options(int argc, char** argv, const std::string& purpose, 
       ->allow_extra_args(false);
   app.add_option("--set", options.assignments, "key=value, over the files")->allow_extra_args(false);
   app.add_option("--log", options.log_level, "trace, debug, info, warn, error or off");
-  if (with_names) {
-    app.add_option("names", options.names, "services to run")->required();
+  if (takes.names) app.add_option("names", options.names, "services to run")->required();
+  if (takes.checkpoints) {
     app.add_option("--checkpoints", options.checkpoints, "directory where services that died left their state")
         ->check(CLI::ExistingDirectory);
   }

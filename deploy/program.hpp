@@ -19,7 +19,13 @@ struct ProgramOptions {
   std::string checkpoints;         // directory of their checkpoints; empty: none
 };
 
+/// What not all of them understand.
+struct ProgramTakes {
+  bool names = false;
+  bool checkpoints = false;
+};
+
 /// Throws BadInput; prints help and exits with 0 when asked for it.
-ProgramOptions parse_options(int argc, char** argv, const std::string& purpose, bool with_names);
+ProgramOptions parse_options(int argc, char** argv, const std::string& purpose, const ProgramTakes& takes = {});
 
 }  // namespace eciton::deploy

@@ -52,6 +52,8 @@ inline constexpr Topic<msg::GoalStatus> goal_status{"goal_status", QosClass::sta
 inline constexpr Topic<msg::DockingState> docking_state{"docking_state", QosClass::state, Scope::swarm};
 inline constexpr Topic<msg::DockingReference> docking_reference{"docking_reference", QosClass::sensor, Scope::swarm,
                                                                 50ms, 500ms};
+inline constexpr Topic<msg::BaseReference> base_reference{"base_reference", QosClass::sensor, Scope::swarm, 200ms,
+                                                          1s};
 inline constexpr Topic<msg::LinkClaim> link_claim{"link_claim", QosClass::state, Scope::swarm};
 inline constexpr Topic<msg::ChainView> chain_view{"chain_view", QosClass::state, Scope::swarm};
 
@@ -71,9 +73,9 @@ inline constexpr auto all =
     std::tuple{clock,          clock_ack,    imu,           pose_measurement, module_state,      external_wrench,
                contact_wrench, model_errors, rotor_command, rotor_state,      joint_command,     joint_state,
                latch_command,  latch_state,  flight_goal,   path_goal,        morph_goal,        contact_goal,
-               dock_goal,      mode_request, goal_status,   docking_state,    docking_reference, link_claim,
-               chain_view,     beacon,       module_info,   radio_state,      heartbeat,         event,
-               fault,          truth_pose,   truth_contact};
+               dock_goal,      mode_request, goal_status,   docking_state,    docking_reference, base_reference,
+               link_claim,     chain_view,   beacon,        module_info,      radio_state,       heartbeat,
+               event,          fault,        truth_pose,    truth_contact};
 
 /// Calls `visit(topic)` for each topic.
 template <class Visit>

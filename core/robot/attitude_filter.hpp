@@ -28,6 +28,11 @@ class AttitudeFilter {
   const Vector3& w_WB_B() const { return w_B_; }  // bias taken off
   const Vector3& bias_rad_s() const { return bias_; }
 
+  template <class Self, class V>
+  static void visit_state(Self& self, V& v) {
+    v(self.ready_, self.R_WB_, self.w_B_, self.bias_);
+  }
+
  private:
   AttitudeFilterConfig config_;
   bool ready_ = false;

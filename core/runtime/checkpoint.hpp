@@ -39,6 +39,21 @@ class CheckpointFile {
   std::size_t size_;
 };
 
+/// The state that a service of this version left, into the same values: for whoever cannot wait for the service.
+/// As CheckpointFile::load.
+template <class State>
+Result<bool> load_state(const std::filesystem::path& file, std::uint32_t version, State& state) {
+  StateWriter counting({});
+  counting(state);
+  std::vector<std::byte> bytes(counting.size());
+  const auto loaded = CheckpointFile(file, version, bytes.size()).load(bytes);
+  if (loaded && *loaded) {
+    StateReader reader(bytes);
+    reader(state);
+  }
+  return loaded;
+}
+
 /// The bytes last put, from one thread to one other, neither waiting: three buffers, of which each thread has one
 /// and the third changes hands.
 class LatestBytes {

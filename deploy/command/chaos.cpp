@@ -9,11 +9,15 @@
 #include "deploy/command/chaos_flight.hpp"
 #include "deploy/command/fleet_run.hpp"
 #include "deploy/command/measurement.hpp"
+#include "deploy/report/statistics.hpp"
 
 namespace eciton::deploy {
 namespace {
 
-constexpr std::size_t random_cells = 12;  // of one flight
+constexpr std::size_t random_cells_least = 12;  // of one flight
+constexpr double cell_s = 12;                   // a blow and what follows, about
+constexpr const char* net_name = "eciton-chaos";
+constexpr const char* disk_path = "/run/eciton-chaos";
 
 struct ChaosOptions {
   std::uint32_t modules = 2;
@@ -29,6 +33,8 @@ struct ChaosOptions {
 struct ChaosTally {
   std::vector<ChaosOutcome> outcomes;
   std::vector<std::string> failures;  // flights that did not come to their end
+  std::vector<std::string> left;      // by flights, when they had ended
+  double memory_growth_share_max = 0;
   bool interrupted = false;
 };
 
@@ -50,17 +56,27 @@ void print_outcome(const ChaosOutcome& o) {
   std::fflush(stdout);
 }
 
+void note_growth(const MemoryGrowth::Most& most, ChaosTally& tally) {
+  if (most.process.empty()) return;
+  std::printf("memory of %s grew by %.1f %%, the others' by less\n", most.process.c_str(), 100 * most.share);
+  tally.memory_growth_share_max = std::max(tally.memory_growth_share_max, most.share);
+}
+
 void fly_plan(const ChaosOptions& options, const ChaosPlan& plan, runtime::StopFlag& stop, ChaosTally& tally) {
   DemoOptions fleet_options{.modules = options.modules, .dds = plan.dds, .layout = "services", .seed = options.seed};
   fleet_options.hosts = true;
-  fleet_options.net = "eciton-chaos";
+  fleet_options.net = net_name;
   fleet_options.keep_logs = options.keep_logs;
+  const SmallDisk disk(disk_path);
+  const std::set<std::string> shared_memory = shared_memory_files();
   run_fleet(fleet_options, stop, [&](const DemoOptions&, const DemoFleet& fleet, Launches& launches) {
     DemoView view(stderr);
-    ChaosFlight flight(fleet, launches, stop, view, fleet_options.net, plan);
+    const net::NetSpec net = fleet.own_net.value_or(net::NetSpec{.name = net_name, .modules = options.modules});
+    ChaosFlight flight(fleet, launches, stop, view, FaultInjector(net, disk.path(), launches), plan);
     const std::optional<FlightFailure> failure = flight.fly();
     tally.outcomes.insert(tally.outcomes.end(), flight.outcomes().begin(), flight.outcomes().end());
     tally.interrupted = failure && failure->interrupted;
+    note_growth(flight.memory_growth(), tally);
     if (failure && !failure->interrupted)
       tally.failures.push_back(plan.dds + ", " + failure->step + ": " + failure->why);
     for (const ChaosOutcome& outcome : flight.outcomes()) print_outcome(outcome);
@@ -68,12 +84,15 @@ void fly_plan(const ChaosOptions& options, const ChaosPlan& plan, runtime::StopF
     std::printf("%s: %s\n", failure->step.c_str(), failure->why.c_str());
     for (const std::string& fault : flight.faults()) std::printf("  %s\n", fault.c_str());
   });
-}
-
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  const auto left = [&](std::size_t count, const char* what) {
+    if (count == 0) return;
+    tally.left.push_back(plan.dds + " left " + std::to_string(count) + " " + what);
+    std::printf("%s\n", tally.left.back().c_str());
+  };
+  left(disk.users().size(), "processes");
+  std::size_t files = 0;
+  for (const std::string& name : shared_memory_files()) files += shared_memory.contains(name) ? 0 : 1;
+  left(files, "files in /dev/shm");
 }
 
 Measurement measurement(const ChaosOptions& options, const ChaosTally& tally) {
@@ -84,7 +103,7 @@ Measurement measurement(const ChaosOptions& options, const ChaosTally& tally) {
                 {"pairwise", options.pairwise},
                 {"dds", options.dds}};
   out.seed = options.seed;
-  std::size_t violations = tally.failures.size();
+  std::size_t violations = tally.failures.size() + tally.left.size();
   double lowest_m = 1e9, deviation_m = 0;
   std::map<std::string, std::vector<double>> back_s;
   Json cells = Json::array();
@@ -103,15 +122,18 @@ Measurement measurement(const ChaosOptions& options, const ChaosTally& tally) {
   }
   out.metrics = {
       {"cells", tally.outcomes.size()}, {"violations", violations}, {"flights_not_ended", tally.failures.size()}};
+  out.metrics["left_behind"] = tally.left.size();
+  out.metrics["memory_growth_share_max"] = tally.memory_growth_share_max;
   if (!tally.outcomes.empty()) {
     out.metrics["height_m_min"] = lowest_m;
     out.metrics["deviation_m_max"] = deviation_m;
   }
-  for (const auto& [kind, values] : back_s) {
-    out.metrics[kind + "_back_s_p50"] = percentile(values, 0.5);
-    out.metrics[kind + "_back_s_p99"] = percentile(values, 0.99);
+  for (auto& [kind, values] : back_s) {
+    std::sort(values.begin(), values.end());
+    out.metrics[kind + "_back_s_p50"] = report::quantile_of_sorted(values, 0.5);
+    out.metrics[kind + "_back_s_p99"] = report::quantile_of_sorted(values, 0.99);
   }
-  out.series = {{"cells", cells}, {"failures", tally.failures}};
+  out.series = {{"cells", cells}, {"failures", tally.failures}, {"left", tally.left}};
   return out;
 }
 
@@ -126,10 +148,14 @@ int run_chaos(const ChaosOptions& options) {
   print_head();
   if (options.minutes > 0) {
     std::mt19937_64 random(options.seed);
+    // One flight for each choice of vendors, as long as the time allows: what leaks shows late.
+    const double flights = options.dds.empty() ? static_cast<double>(vendor_choices.size()) : 1;
+    const std::size_t cells =
+        std::max(random_cells_least, static_cast<std::size_t>(60 * options.minutes / flights / cell_s));
     const Duration end = monotonic_now() + from_s(60 * options.minutes);
     for (std::size_t flight = 0; monotonic_now() < end && !tally.interrupted; ++flight) {
       const std::string dds = options.dds.empty() ? vendor_choices[flight % vendor_choices.size()] : options.dds;
-      fly_plan(options, random_plan(dds, options.modules, random_cells, random), stop, tally);
+      fly_plan(options, random_plan(dds, options.modules, cells, random), stop, tally);
     }
   } else {
     for (const ChaosPlan& plan : options.matrix ? full_matrix(options.modules) : pairwise_matrix(options.modules)) {

@@ -12,6 +12,7 @@ namespace {
 constexpr double look_on_s = 1.5;  // after a blow, before anything is said to be settled
 constexpr double approach_gap_m_max = 0.9, approach_timeout_s = 30, dock_timeout_s = 60;
 constexpr double apart_timeout_s = 30;
+constexpr double heard_s = 0.2;  // at the most since a module said where it is
 
 double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -20,8 +21,8 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
 }  // namespace
 
 ChaosFlight::ChaosFlight(const DemoFleet& fleet, Launches& launches, const runtime::StopFlag& stop, DemoView& view,
-                         const std::string& net, const ChaosPlan& plan)
-    : FleetFlight(fleet, launches, stop, view), plan_(plan), injector_(net, launches) {}
+                         FaultInjector injector, const ChaosPlan& plan)
+    : FleetFlight(fleet, launches, stop, view), plan_(plan), injector_(std::move(injector)), watched_(launches) {}
 
 std::optional<FlightFailure> ChaosFlight::fly() {
   try {
@@ -44,7 +45,9 @@ std::optional<FlightFailure> ChaosFlight::fly() {
       } else {
         strike(cell);
       }
+      if (&cell == &plan_.cells.front()) growth_.begin(watched_);
     }
+    most_growth_ = growth_.most(watched_);
     undock_all();
     spread_and_land();
   } catch (const FlightFailure& failed) {
@@ -54,8 +57,8 @@ std::optional<FlightFailure> ChaosFlight::fly() {
 }
 
 void ChaosFlight::on_end(Launch& launch, const ChildReport& report) {
-  const bool meant = striking_ != nullptr && strikes_a_process(striking_->kind) &&
-                     launch.plan().module_id == striking_->module_id && report.name == striking_->process;
+  const bool meant =
+      striking_ != nullptr && launch.plan().module_id == striking_->module_id && report.name == striking_->replaced();
   if (!meant) ended_.push_back(describe(launch, report));
   if (launch.plan().module_id == 0) FleetFlight::on_end(launch, report);  // without the world nothing flies
 }
@@ -116,7 +119,7 @@ void ChaosFlight::look(ChaosOutcome& outcome) {
 
 bool ChaosFlight::role_filled(const ChaosCell& cell, Duration since) const {
   const pid_t pid = injector_.pid_of(cell);
-  if (pid == 0 || (cell.kind == FaultKind::kill && pid == injector_.struck())) return false;
+  if (pid == 0 || (cell.kind != FaultKind::hang && pid == injector_.struck())) return false;
   const DemoEar& ear = *ears_[cell.module_id - 1];
   return std::any_of(ear.heartbeats().begin(), ear.heartbeats().end(), [&](const auto& beat) {
     return static_cast<pid_t>(beat.second.pid) == pid && monotonic_now() - ear.heartbeat_age(beat.first) > since;
@@ -127,7 +130,7 @@ bool ChaosFlight::all_heard() const {
   return std::all_of(ids_.begin(), ids_.end(), [&](std::uint32_t id) {
     const KnownModule* module = operator_.fleet().find(id);
     return module != nullptr && module->state &&
-           to_s(operator_.module_now() - from_ns(module->state->stamp_ns)) < 0.5;
+           to_s(operator_.module_now() - from_ns(module->state->stamp_ns)) < heard_s;
   });
 }
 
@@ -163,7 +166,11 @@ void ChaosFlight::strike(const ChaosCell& cell) {
   if (const Status undone = injector_.end(cell); !undone) fail(undone.error().message);
   const Duration over = monotonic_now();
   const auto since_s = [&] { return to_s(monotonic_now() - over); };
-  const auto back = [&] { return process ? role_filled(cell, over) : all_heard(); };
+  const auto back = [&] {
+    return process                           ? role_filled(cell, over)
+           : cell.kind == FaultKind::address ? role_filled(cell, over) && all_heard()
+                                             : all_heard();
+  };
   const double back_s_max = process ? bounds_.back_s : bounds_.heal_s;
   while (!back() && since_s() < 3 * back_s_max) look(outcome);
   outcome.back_s = since_s();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "deploy/command/chaos_leaks.hpp"
 #include "deploy/command/chaos_plan.hpp"
 #include "deploy/command/fleet_flight.hpp"
 
@@ -32,11 +33,13 @@ struct ChaosOutcome {
 class ChaosFlight final : public FleetFlight {
  public:
   ChaosFlight(const DemoFleet& fleet, Launches& launches, const runtime::StopFlag& stop, DemoView& view,
-              const std::string& net, const ChaosPlan& plan);
+              FaultInjector injector, const ChaosPlan& plan);
 
   /// Nothing when the flight came to its end, whatever bounds were broken on the way.
   std::optional<FlightFailure> fly();
   const std::vector<ChaosOutcome>& outcomes() const { return outcomes_; }
+  /// From the first blow that was settled to the last, of processes that were not struck.
+  const MemoryGrowth::Most& memory_growth() const { return most_growth_; }
 
  private:
   void on_end(Launch& launch, const ChildReport& report) override;
@@ -59,6 +62,9 @@ class ChaosFlight final : public FleetFlight {
   std::vector<std::size_t> chain_before_;       // members of its chain
   const ChaosCell* striking_ = nullptr;
   std::vector<std::string> ended_;  // by themselves
+  const Launches& watched_;
+  MemoryGrowth growth_;
+  MemoryGrowth::Most most_growth_;
 };
 
 }  // namespace eciton::deploy

@@ -30,7 +30,7 @@ struct UpOptions {
 };
 
 constexpr Duration start_phase = std::chrono::seconds(2);  // in which a process says that its input is bad
-constexpr Duration pace = std::chrono::milliseconds(100);  // at which it looks for signs of life
+constexpr Duration pace = std::chrono::milliseconds(20);   // at which it looks for signs of life
 constexpr int bad_input_status = 2;
 
 std::vector<LaunchPlan> plan_all(const UpOptions& options) {

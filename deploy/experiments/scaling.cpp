@@ -22,6 +22,7 @@ constexpr double preload_s = 4;
 constexpr double watch_local_s = 12, watch_paper_s = 60;
 constexpr double link_lever_m = 0.4;  // from the middle of a member to its links
 constexpr double reserve_Nm = 1.5;    // of a member about each axis, well within its rotors' reach at hover
+constexpr double rest_s = 30;         // after the last docking: a long chain relaxes into its shape in about 15 s
 constexpr double path_m = 0.4, path_speed_m_s = 0.3, path_limit_s = 60;
 
 /// One way to set the paper's law; authors' first: 40 Hz and 0.1.
@@ -152,6 +153,7 @@ Figures run_trial(const ExperimentConfig& config, std::uint32_t trial) {
   still.simulation.world.modules = row_about_the_base(modules_of(config, trial));
   ChainFlight flight(still, 0, modules_of(config, trial));
   flight.assemble();
+  flight.pilot().wait(rest_s);
   Figures out;
   const bool flown = fly_path(flight, path_about(flight.home()), path_speed_m_s, path_limit_s);
   const FlightFigures f = flight.recorder().figures();

@@ -10,6 +10,7 @@
 #include "core/runtime/watchdog.hpp"
 #include "deploy/module.hpp"
 #include "deploy/program.hpp"
+#include "hal/host/resumption.hpp"
 #include "hal/sim/make_devices.hpp"
 #include "hal/sim/socket_link.hpp"
 
@@ -25,14 +26,16 @@ constexpr Duration command_wait_wall = std::chrono::microseconds(1500);  // of t
 /// One module's hardware behind the world's socket: sense, wait for control, act, tick by tick.
 class SimulatedHost {
  public:
-  SimulatedHost(const deploy::ModuleConfig& config, const runtime::StopFlag& stop)
+  SimulatedHost(const deploy::ModuleConfig& config, const std::filesystem::path& checkpoints,
+                const runtime::StopFlag& stop)
       : stop_(stop),
         airframe_(deploy::make_airframe(config)),
         link_(value_or_throw(hal::sim::SocketLink::connect(config.hal.socket, config.id, connect_timeout))),
         lockstep_(link_->pace() == hal::sim::Pace::lockstep),
         devices_(hal::sim::make_devices(link_->board(), airframe_, config.hal.battery_compensation)),
+        resumption_(resume(checkpoints)),
         ring_(config.module_participant("hardware")),
-        group_({.module_id = config.id, .process = "hardware"}, {&ring_},
+        group_({.module_id = config.id, .process = "hardware", .checkpoints = checkpoints}, {&ring_},
                lockstep_ ? runtime::ServiceGroup::Pacing::lockstep : runtime::ServiceGroup::Pacing::wall_clock) {
     if (lockstep_) ring_.set_all_wake(false);
     sense_.emplace(ring_, hal::SenseConfig{.module_id = config.id}, devices_);
@@ -43,14 +46,14 @@ class SimulatedHost {
     commands_->set_wakes(true);
     if (lockstep_) master_.emplace(ring_, config.service_processes(), stop);
     sleeper_.emplace(ring_.waker(), stop);
-    deploy::bring_up(devices_);
   }
 
   void run() {
+    if (resumption_) act_->go_on(resumption_->end());
     group_.start(lockstep_ ? link_->board().sensors().stamp.time_since_epoch() : monotonic_now());
     while (!stop_.requested()) {
       turns_.turn();
-      const hal::Io io = link_->wait_sensors(std::chrono::milliseconds(100));
+      const hal::Io io = link_->wait_sensors(std::chrono::milliseconds(10));
       if (io == hal::Io::error) {
         spdlog::info("the world has gone: {}", std::string(link_->end_reason()));
         break;
@@ -69,6 +72,17 @@ class SimulatedHost {
   }
 
  private:
+  /// Powers the devices; what flew a moment ago flies on before there is a ring.
+  std::unique_ptr<hal::Resumption> resume(const std::filesystem::path& checkpoints) {
+    // Joints hold where they are, which the first readings tell; in lockstep they come with the first tick.
+    if (!lockstep_) link_->wait_sensors(std::chrono::milliseconds(100));
+    deploy::bring_up(devices_);
+    if (lockstep_ || checkpoints.empty()) return nullptr;
+    const auto wait = [this] { return link_->wait_sensors(std::chrono::milliseconds(10)) == hal::Io::ok; };
+    return hal::Resumption::begin(checkpoints / "actuators.checkpoint", airframe_, devices_,
+                                  {.wait_sensors = wait, .act = [this] { link_->act(); }}, wall_now());
+  }
+
   void tick() {
     const TimePoint stamp = link_->board().sensors().stamp;
     const Duration pace = lockstep_ ? stamp.time_since_epoch() : monotonic_now();
@@ -106,6 +120,7 @@ class SimulatedHost {
   std::unique_ptr<hal::sim::SocketLink> link_;
   bool lockstep_;
   hal::Devices devices_;
+  std::unique_ptr<hal::Resumption> resumption_;
   bus::Participant ring_;
   runtime::ServiceGroup group_;
   std::optional<hal::SenseService> sense_;
@@ -119,7 +134,8 @@ class SimulatedHost {
 };
 
 int run(int argc, char** argv) {
-  const deploy::ProgramOptions options = deploy::parse_options(argc, argv, "The hardware host of one module.", false);
+  const deploy::ProgramOptions options =
+      deploy::parse_options(argc, argv, "The hardware host of one module.", {.checkpoints = true});
   const deploy::ModuleConfig config =
       value_or_throw(deploy::load_module_config(options.config_files, options.assignments));
   if (config.hal.socket.empty()) throw BadInput{{"hal.socket is missing; expected the path of the world's socket"}};
@@ -130,7 +146,7 @@ int run(int argc, char** argv) {
   {
     // Samples come through the vendor's threads: late there is late everywhere.
     const runtime::RealtimeForNewThreads vendor_too(config.realtime_priority);
-    host.emplace(config, stop);
+    host.emplace(config, options.checkpoints, stop);
   }
   const runtime::Watchdog watchdog([&] { return host->find_idle(); });
   if (config.realtime_priority > 0) {

@@ -5,6 +5,7 @@
 
 #include "core/base/log.hpp"
 #include "core/base/wall_clock.hpp"
+#include "core/runtime/interface_watch.hpp"
 #include "core/runtime/lockstep_executor.hpp"
 #include "core/runtime/realtime_executor.hpp"
 #include "core/runtime/realtime_thread.hpp"
@@ -26,7 +27,8 @@ std::unique_ptr<runtime::Executor> make_executor(const deploy::ModuleConfig& con
 }
 
 int run(int argc, char** argv) {
-  const deploy::ProgramOptions options = deploy::parse_options(argc, argv, "Runs services of one module.", true);
+  const deploy::ProgramOptions options =
+      deploy::parse_options(argc, argv, "Runs services of one module.", {.names = true, .checkpoints = true});
   deploy::ModuleConfig config = value_or_throw(deploy::load_module_config(options.config_files, options.assignments));
   config.radio.incarnation = config.docking.incarnation = deploy::incarnation_at(wall_now());
   const std::string process = options.names.size() == 1 ? options.names.front() : "services";
@@ -56,6 +58,9 @@ int run(int argc, char** argv) {
                                        .checkpoints = options.checkpoints},
                                       participants);
   for (const auto& service : services) executor->add(*service);
+  // The radio has a state that a restart does not lose; a process that flies as well is not ended for an address.
+  std::optional<runtime::InterfaceWatch> swarm_interface;
+  if (has_radio && options.names.size() == 1) swarm_interface.emplace(config.swarm_ring.network_interface, stop);
   const runtime::Watchdog watchdog([&] { return executor->find_idle(); });
   executor->run(stop);
   return 0;

@@ -59,7 +59,7 @@ class TruthObserver {
 };
 
 int run(int argc, char** argv) {
-  const deploy::ProgramOptions options = deploy::parse_options(argc, argv, "The simulated world.", false);
+  const deploy::ProgramOptions options = deploy::parse_options(argc, argv, "The simulated world.");
   ConfigTree tree;
   for (const std::string& file : options.config_files) ok_or_throw(tree.add_file(file));
   for (const std::string& assignment : options.assignments) ok_or_throw(tree.set(assignment, "--set"));

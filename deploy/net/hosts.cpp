@@ -96,6 +96,8 @@ std::string host_address(std::uint32_t index) {
   return "10.99.0." + std::to_string(index == operator_host ? 254 : index);
 }
 
+std::string moved_address(std::uint32_t index) { return "10.99.0." + std::to_string(100 + index); }
+
 fs::path host_namespace(const std::string& net, std::uint32_t index) {
   return namespaces_directory / (net + "-" + host_name(index));
 }

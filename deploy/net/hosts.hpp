@@ -26,6 +26,8 @@ Status check_name(const std::string& net);
 std::string host_name(std::uint32_t index);
 /// On the radio; the same in every net, which do not hear each other.
 std::string host_address(std::uint32_t index);
+/// That a module's host has after it moved: what a new lease of its access point would give it.
+std::string moved_address(std::uint32_t index);
 /// The file that stands for the namespace: "/run/netns/eciton-m1".
 std::filesystem::path host_namespace(const std::string& net, std::uint32_t index);
 

@@ -86,18 +86,14 @@ void keep_ipv6_off() {
   }
 }
 
-Status configure(std::uint32_t index, std::uint32_t modules) {
-  Configuration configuration;
-  configuration.raise("lo", IFF_UP | IFF_MULTICAST);
+/// With the routes and neighbours that go when an interface loses its address.
+void configure_address(Configuration& configuration, std::uint32_t index, std::uint32_t modules,
+                       const std::string& address) {
   ifreq request = request_for(radio_interface);
-  request.ifr_hwaddr = hardware(host_mac(index));
-  configuration.set("hardware address", SIOCSIFHWADDR, request);
-  request.ifr_addr = ipv4(host_address(index));
+  request.ifr_addr = ipv4(address);
   configuration.set("address", SIOCSIFADDR, request);
   request.ifr_netmask = ipv4("255.255.255.0");
   configuration.set("netmask", SIOCSIFNETMASK, request);
-  request.ifr_qlen = transmit_queue_frames;
-  configuration.set("queue length", SIOCSIFTXQLEN, request);
   configuration.raise(radio_interface, IFF_UP | IFF_MULTICAST);
   std::string device = radio_interface;
   rtentry route{};
@@ -109,16 +105,37 @@ Status configure(std::uint32_t index, std::uint32_t modules) {
   for (std::uint32_t other = 0; other <= modules; ++other) {
     if (other == index) continue;
     arpreq neighbour{};
-    neighbour.arp_pa = ipv4(host_address(other));
     neighbour.arp_ha = hardware(host_mac(other));
     neighbour.arp_flags = ATF_PERM | ATF_COM;
     std::strncpy(neighbour.arp_dev, radio_interface, sizeof neighbour.arp_dev - 1);
-    configuration.set("neighbour", SIOCSARP, neighbour);
+    for (const std::string& its : {host_address(other), moved_address(other)}) {
+      neighbour.arp_pa = ipv4(its);
+      configuration.set("neighbour", SIOCSARP, neighbour);
+    }
   }
+}
+
+Status configure(std::uint32_t index, std::uint32_t modules) {
+  Configuration configuration;
+  configuration.raise("lo", IFF_UP | IFF_MULTICAST);
+  ifreq request = request_for(radio_interface);
+  request.ifr_hwaddr = hardware(host_mac(index));
+  configuration.set("hardware address", SIOCSIFHWADDR, request);
+  request.ifr_qlen = transmit_queue_frames;
+  configuration.set("queue length", SIOCSIFTXQLEN, request);
+  configure_address(configuration, index, modules, host_address(index));
   return configuration.status();
 }
 
 }  // namespace
+
+Status set_address(const std::string& net, std::uint32_t index, std::uint32_t modules, const std::string& address) {
+  const InNamespace inside(host_namespace(net, index));
+  Configuration configuration;
+  configure_address(configuration, index, modules, address);
+  if (configuration.status()) return ok();
+  return Error{"host " + host_name(index) + " of net " + net + ": " + configuration.status().error().message};
+}
 
 MacAddress host_mac(std::uint32_t index) {
   MacAddress mac = mac_prefix;

@@ -34,6 +34,9 @@ class Tap {
   int fd_ = -1;
 };
 
+/// Gives a host's eth0 another address, live: as if its lease had run out.
+Status set_address(const std::string& net, std::uint32_t index, std::uint32_t modules, const std::string& address);
+
 using MacAddress = std::array<std::uint8_t, 6>;
 MacAddress host_mac(std::uint32_t index);
 /// Nothing: not a host's.

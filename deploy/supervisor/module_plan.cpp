@@ -36,7 +36,9 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
       .claims = {"module id " + std::to_string(config.id), "DDS domain " + std::to_string(config.module_ring.domain)},
       .processes = {}};
   // In lockstep nothing hangs on its own: the world waits for the slowest.
-  const Duration watchdog = config.clock == "wall" ? from_s(config.watchdog_s) : Duration::zero();
+  const auto on_wall_clock = [&](double s) { return config.clock == "wall" ? from_s(s) : Duration::zero(); };
+  const Duration watchdog = on_wall_clock(config.watchdog_s);
+  const Duration hardware_watchdog = on_wall_clock(config.hardware_watchdog_s);
   plan.processes.push_back(
       plan_process("hardware", config, programs / "eciton-hardware", config_file, assignments, {}));
   const std::vector<std::string> all(service_names.begin(), service_names.end());
@@ -44,10 +46,12 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
     const bool composed = config.layout == "composed";
     plan.processes.push_back(plan_process(name, config, programs / "eciton-service", config_file, assignments,
                                           composed ? all : std::vector<std::string>{name}));
-    // In lockstep nothing is restarted: the world waits for the dead.
-    plan.processes.back().has_checkpoints = config.clock == "wall";
   }
-  for (PlannedProcess& process : plan.processes) process.child.watchdog = watchdog;
+  for (PlannedProcess& process : plan.processes) {
+    process.child.watchdog = process.name == "hardware" ? hardware_watchdog : watchdog;
+    // In lockstep nothing is restarted: the world waits for the dead.
+    process.has_checkpoints = config.clock == "wall";
+  }
   return plan;
 }
 

@@ -11,6 +11,7 @@ namespace eciton::deploy {
 namespace {
 
 constexpr int bad_input = 2;
+constexpr int checks_least = 4;  // in which a child was silent before it counts as hung, however long they took
 
 Duration monotonic() {
   timespec t{};
@@ -95,7 +96,8 @@ void Supervisor::listen_to(Child& child, Duration since_last_check) {
     return;
   }
   if (!child.ready) return;
-  child.silent += std::clamp(since_last_check, Duration::zero(), config_.silence_per_check_max);
+  const Duration counts_most = std::min(config_.silence_per_check_max, child.spec.watchdog / checks_least);
+  child.silent += std::clamp(since_last_check, Duration::zero(), counts_most);
   if (child.silent <= (child.stopping ? config_.stop_patience : child.spec.watchdog)) return;
   child.killed = true;
   child.process->signal(SIGKILL);  // its end is taken when the kernel tells of it

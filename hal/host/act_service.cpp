@@ -13,8 +13,7 @@ ActService::ActService(bus::Participant& ring, const ActConfig& config, const ro
     : config_(config),
       airframe_(airframe),
       devices_(devices),
-      allocator_(airframe),
-      descent_({}, airframe.mass_kg, airframe.I_B_kg_m2),
+      safe_(airframe),
       rotor_command_(ring.create_reader(topics::rotor_command)),
       joint_command_(ring.create_reader(topics::joint_command)),
       latch_command_(ring.create_reader(topics::latch_command)),
@@ -31,6 +30,7 @@ void ActService::step(TimePoint now) noexcept {
   } else {
     write_rotors(now);
   }
+  safe_.note_written(now, devices_.armed);
   write_joints_and_latches();
   last_step_ = now;
 }
@@ -39,11 +39,9 @@ void ActService::take_commands(TimePoint now) noexcept {
   while (const auto command = rotor_command_.take()) {
     if (command->value.module_id != config_.module_id || command->value.rotors.size() != devices_.rotor_count)
       continue;
-    if (descent_.phase() != robot::SafePhase::idle) {
+    if (safe_.command(command->value)) {
       report(now, msg::Severity::warning, "commands came back: the safe output ends");
-      descent_.reset();
     }
-    last_ = command->value;
     last_command_ = now;
     set_armed(command->value.armed, now);
   }
@@ -69,65 +67,34 @@ void ActService::set_armed(bool armed, TimePoint now) noexcept {
 
 void ActService::write_rotors(TimePoint) noexcept {
   std::array<RotorSetpoint, robot::rotors_max> setpoints{};
-  for (std::size_t k = 0; k < last_.rotors.size(); ++k) {
-    setpoints[k] = {last_.rotors[k].thrust_N, last_.rotors[k].gimbal_rad};
-  }
+  const auto& rotors = safe_.last_command().rotors;
+  for (std::size_t k = 0; k < rotors.size(); ++k) setpoints[k] = {rotors[k].thrust_N, rotors[k].gimbal_rad};
   devices_.rotors->write(std::span(setpoints).first(devices_.rotor_count));
 }
 
 void ActService::write_safe_output(TimePoint now) noexcept {
-  if (descent_.phase() == robot::SafePhase::idle) {
+  if (!safe_.flies()) {
     report(now, msg::Severity::error, "no rotor command for 20 ms: safe output");
-    std::array<robot::RotorOutput, robot::rotors_max> held{};
-    for (std::size_t k = 0; k < last_.rotors.size(); ++k) {
-      held[k] = {last_.rotors[k].thrust_N, last_.rotors[k].gimbal_rad};
-    }
-    allocator_.set_gimbals(std::span(held).first(devices_.rotor_count));
-    const bool hold = last_.safe_output == msg::SafeOutput::hold_hover;
-    robot::Wrench feed_forward_W;
-    if (hold) {
-      // What the last command made beyond holding the weight: it fades, the hover wrench stays.
-      const auto wrench_B =
-          robot::rotor_wrench_B(airframe_, std::span(held).first(devices_.rotor_count), robot::Vector3::Zero());
-      const robot::Matrix3& R = attitude_.R_WB();
-      feed_forward_W = {R * wrench_B.force - robot::Vector3(0, 0, airframe_.mass_kg * robot::gravity_m_s2),
-                        R * wrench_B.moment};
-    }
-    descent_.start(hold ? robot::SafeManoeuvre::hold_hover : robot::SafeManoeuvre::descend, attitude_.R_WB(), 0,
-                   feed_forward_W);
+    safe_.begin();
   }
-  const double dt_s = std::clamp(to_s(now - last_step_), 0.0, 0.02);
-  const robot::Wrench wrench_B = descent_.update(attitude_.R_WB(), attitude_.w_WB_B(), specific_force_M_, dt_s);
-  if (descent_.finished()) {
+  const std::span<const RotorSetpoint> setpoints = safe_.update(std::clamp(to_s(now - last_step_), 0.0, 0.02));
+  if (setpoints.empty()) {
     set_armed(false, now);
     return;
   }
-  const robot::Allocation allocation = allocator_.update(wrench_B, robot::Vector3::Zero());
-  std::array<RotorSetpoint, robot::rotors_max> setpoints{};
-  for (std::size_t k = 0; k < allocation.rotor_count; ++k) {
-    setpoints[k] = {allocation.rotors[k].thrust_N, allocation.rotors[k].gimbal_rad};
-  }
-  devices_.rotors->write(std::span(setpoints).first(devices_.rotor_count));
+  devices_.rotors->write(setpoints);
 }
 
 void ActService::watch_attitude() noexcept {
   while (const auto imu = imu_.take()) {
-    if (imu->value.module_id != config_.module_id) continue;
-    // One sample that is no number would stay in the filter for ever.
-    if (!robot::vector(imu->value.specific_force_M_m_s2).allFinite() ||
-        !robot::vector(imu->value.w_WM_M_rad_s).allFinite()) {
-      continue;
-    }
-    const TimePoint stamp = from_ns(imu->value.stamp_ns);
-    const double dt_s = std::clamp(to_s(stamp - last_imu_), 0.0, 0.02);
-    last_imu_ = stamp;
-    specific_force_M_ = robot::vector(imu->value.specific_force_M_m_s2);
-    attitude_.update(robot::vector(imu->value.w_WM_M_rad_s), specific_force_M_, dt_s);
+    const msg::Imu& m = imu->value;
+    if (m.module_id != config_.module_id) continue;
+    safe_.hear_imu(from_ns(m.stamp_ns), robot::vector(m.w_WM_M_rad_s), robot::vector(m.specific_force_M_m_s2));
   }
   while (const auto state = module_state_.take()) {
     // While the estimator lives its attitude is better; when control is lost the filter goes on from it.
     if (state->value.module_id == config_.module_id && state->value.mode == msg::EstimatorMode::ready) {
-      attitude_.set(robot::rotation(state->value.q_WM));
+      safe_.set_attitude(robot::rotation(state->value.q_WM));
     }
   }
 }

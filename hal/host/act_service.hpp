@@ -5,11 +5,9 @@
 #include <vector>
 
 #include "core/bus/participant.hpp"
-#include "core/robot/allocation.hpp"
-#include "core/robot/attitude_filter.hpp"
-#include "core/robot/safe_descent.hpp"
 #include "core/runtime/service.hpp"
 #include "hal/devices.hpp"
+#include "hal/host/safe_output.hpp"
 #include "idl/topics.hpp"
 
 namespace eciton::hal {
@@ -29,6 +27,12 @@ class ActService final : public runtime::Service {
     return runtime::on(rotor_command_, from_s(config_.at_most_s), runtime::Phase::act);
   }
   void step(TimePoint now) noexcept override;
+  std::uint32_t state_version() const noexcept override { return SafeOutput::state_version; }
+  void save_state(runtime::StateWriter& writer) const noexcept override { writer(safe_); }
+  void load_state(runtime::StateReader& reader) noexcept override { reader(safe_); }
+
+  /// Before the first step: the rotors run, and this flies them.
+  void go_on(const SafeOutput& flying) { safe_ = flying; }
 
  private:
   void take_commands(TimePoint now) noexcept;
@@ -42,16 +46,11 @@ class ActService final : public runtime::Service {
   ActConfig config_;
   robot::Airframe airframe_;
   Devices& devices_;
-  robot::Allocator allocator_;
-  robot::AttitudeFilter attitude_;
-  robot::SafeDescent descent_;
+  SafeOutput safe_;
 
   bool rotors_refuse_ = false;  // to be armed
-  msg::RotorCommand last_;
   TimePoint last_command_{};
   TimePoint last_step_{};
-  TimePoint last_imu_{};
-  robot::Vector3 specific_force_M_{0, 0, robot::gravity_m_s2};
 
   bus::Reader<msg::RotorCommand> rotor_command_;
   bus::Reader<msg::JointCommand> joint_command_;

@@ -50,6 +50,9 @@ class ContactWrenchLaw {
                               std::span<const robot::Wrench> desired_W, double dt_s);
   /// No estimate came: only the fading goes on.
   const robot::Wrench& fade(double dt_s);
+  /// The module has turned: what strains it are mostly joints that stand a little beside their angles, and turn with
+  /// it. `turn_W`: from the axes of before to those of now.
+  void turn(const robot::Matrix3& turn_W) { feed_forward_W_ = robot::rotate(turn_W, feed_forward_W_); }
   void set_law(ContactLaw law) { config_.law = law; }
   void reset();
   void set_feed_forward(const robot::Wrench& feed_forward_W) { feed_forward_W_ = feed_forward_W; }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/robot/arrays.hpp"
 
@@ -13,17 +14,11 @@ ContactLaw contact_law(const std::string& name) {
   return name == "none" ? ContactLaw::none : name == "paper" ? ContactLaw::paper : ContactLaw::local;
 }
 
-constexpr Duration docking_silence = std::chrono::seconds(1);     // of a chain mate that was docking
+constexpr Duration docking_silence = std::chrono::seconds(1);  // of a chain mate that was docking
+constexpr Duration base_reference_interval = std::chrono::milliseconds(50);
 constexpr Duration law_silence = std::chrono::milliseconds(300);  // without an estimate: the feed-forward fades
 
 robot::Pose pose_of(const msg::ModuleState& s) { return {robot::vector(s.p_WM_m), robot::rotation(s.q_WM)}; }
-
-/// By one state of the 50 a second that cross the radio: a second's worth of them counts.
-void smooth(robot::Pose& X, const robot::Pose& newest) {
-  constexpr double share = 0.02;
-  X.p += share * (newest.p - X.p);
-  X.R = X.R * robot::exp_so3(share * robot::log_so3(X.R.transpose() * newest.R));
-}
 
 }  // namespace
 
@@ -55,7 +50,9 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
       morph_goal_(ring.create_reader(topics::morph_goal)),
       contact_goal_(ring.create_reader(topics::contact_goal)),
       docking_reference_(ring.create_reader(topics::docking_reference)),
+      base_reference_(ring.create_reader(topics::base_reference)),
       rotor_command_(ring.create_writer(topics::rotor_command)),
+      base_reference_out_(ring.create_writer(topics::base_reference)),
       goal_status_(ring.create_writer(topics::goal_status)),
       event_(ring.create_writer(topics::event)) {
   module_state_.news_only_of(config.module_id);  // peers' states come on this topic too and trigger nothing
@@ -67,6 +64,7 @@ void ControlService::step(TimePoint now) noexcept {
   take_surroundings(now);
   take_chain(now);
   take_wrenches(now);
+  take_base_reference(now);
   const bool acts = settled(now);
   judge(now);
   take_requests(now);
@@ -123,7 +121,6 @@ void ControlService::take_state(TimePoint now) noexcept {
       state_at_ = from_ns(s.stamp_ns);
     } else {
       neighbourhood_.hear(s, now - sample->age);
-      if (in_chain() && s.module_id == view_.base_id) smooth(X_WM_base_, pose_of(s));
     }
   }
   // States come at the IMU's pace; between them the module goes on as it was going.
@@ -214,14 +211,42 @@ void ControlService::enter_chain(const msg::ChainView& view, TimePoint now) noex
     place.base = i;
     if (other != nullptr && other->state.module_id == id) X_WM_base = pose_of(other->state);
   }
-  X_WM_base_ = X_WM_base;
   reference_.join(place, std::span<const double>(joint_rad).first(place.members * joints_each), X_WM_base,
                   seconds(now));
 }
 
 void ControlService::see_base(TimePoint now) noexcept {
-  // While it stands, its integral keeps the base at its reference: smoothed, its states say where that is.
-  if (in_chain()) reference_.see_base(X_WM_base_, seconds(now));
+  if (!in_chain() || base_.epoch != view_.active_epoch || !base_.at_rest) return;
+  reference_.see_base({robot::vector(base_.p_WM_m), robot::rotation(base_.q_WM)}, seconds(now));
+}
+
+void ControlService::take_base_reference(TimePoint now) noexcept {
+  while (const auto sample = base_reference_.take()) {
+    const msg::BaseReference& base = sample->value;
+    if (!in_chain() || base.epoch != view_.active_epoch || base.module_id != view_.base_id || integrates()) continue;
+    const robot::Vector3 linear_m_s2 = robot::vector(base.integral_W_m_s2);
+    const robot::Vector3 angular_rad_s2 = robot::vector(base.integral_M_rad_s2);
+    if (!is_pose(base.p_WM_m, base.q_WM) || !linear_m_s2.allFinite() || !angular_rad_s2.allFinite()) {
+      ++rejected_;
+      continue;
+    }
+    if (base_.epoch == base.epoch) {
+      follow_integrals(linear_m_s2 - robot::vector(base_.integral_W_m_s2),
+                       robot::rotation(base.q_WM) * (angular_rad_s2 - robot::vector(base_.integral_M_rad_s2)),
+                       seconds(now));
+    }
+    base_ = base;
+  }
+}
+
+/// Ours differ from the base's by what each module had before it joined, and follow their changes as a rigid body.
+void ControlService::follow_integrals(const robot::Vector3& linear_W_m_s2, const robot::Vector3& angular_W_rad_s2,
+                                      double now_s) noexcept {
+  std::array<robot::PoseReference, robot::members_max> members;
+  reference_.members_at(now_s, members);
+  const robot::Vector3 lever_W_m = members[reference_.place().own].p_WM - members[reference_.place().base].p_WM;
+  pose_control_.set_integrals(pose_control_.integral_m_s2() + linear_W_m_s2 + angular_W_rad_s2.cross(lever_W_m),
+                              pose_control_.integral_rad_s2() + motion_.R_WM.transpose() * angular_W_rad_s2);
 }
 
 void ControlService::take_model_errors() noexcept {
@@ -346,7 +371,8 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   pose_control_.set_gains(
       between(gains_assembled(), gains_free(), gentle ? config_.stiffness : config_.stiffness_alone));
   const robot::Wrench feed_forward_W = hand_over_.update(feed_forward(dt_s) + correction(c_B), dt_s);
-  flown_ = separated(now, dt_s);
+  const robot::PoseReference before = std::exchange(flown_, separated(now, dt_s));
+  if (in_chain()) law_.turn(flown_.R_WM * before.R_WM.transpose());
   const robot::Wrench demanded_B =
       pose_control_.update({.state = motion_,
                             .reference = flown_,
@@ -368,6 +394,20 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   for (const robot::RotorOutput& rotor : allocation_.outputs())
     out.rotors.push_back({rotor.thrust_N, rotor.gimbal_rad});
   rotor_command_.write(out);
+  if (is_base() && now - base_written_at_ >= base_reference_interval) write_base_reference(now);
+}
+
+void ControlService::write_base_reference(TimePoint now) noexcept {
+  const robot::PoseReference at = reference_.at(seconds(now));
+  base_reference_out_.write({.module_id = config_.module_id,
+                             .stamp_ns = to_ns(now),
+                             .epoch = view_.active_epoch,
+                             .at_rest = reference_.at_rest(seconds(now)),
+                             .p_WM_m = robot::array(at.p_WM),
+                             .q_WM = robot::quaternion(at.R_WM),
+                             .integral_W_m_s2 = robot::array(pose_control_.integral_m_s2()),
+                             .integral_M_rad_s2 = robot::array(pose_control_.integral_rad_s2())});
+  base_written_at_ = now;
 }
 
 /// Against the false wrench that the rotors make as they are now.

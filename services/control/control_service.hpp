@@ -78,10 +78,13 @@ class ControlService final : public runtime::Service {
     return runtime::on(module_state_, from_s(config_.period_s), runtime::Phase::control);
   }
   void step(TimePoint now) noexcept override;
-  std::uint32_t state_version() const noexcept override { return 4; }
+  std::uint32_t state_version() const noexcept override { return 5; }
   void save_state(runtime::StateWriter& writer) const noexcept override { visit_state(*this, writer); }
   void load_state(runtime::StateReader& reader) noexcept override;
-  void describe(msg::Heartbeat& heartbeat) const noexcept override { heartbeat.flight_mode = to_message(mode_); }
+  void describe(msg::Heartbeat& heartbeat) const noexcept override {
+    heartbeat.flight_mode = to_message(mode_);
+    heartbeat.rejected = rejected_;
+  }
 
  private:
   static msg::FlightMode to_message(FlightMode mode) { return static_cast<msg::FlightMode>(mode); }
@@ -93,7 +96,7 @@ class ControlService final : public runtime::Service {
     v(self.mode_, self.reference_, self.separation_, self.flown_, self.pose_control_, self.law_, self.feedback_,
       self.allocator_, self.epoch_, self.last_step_, self.view_, self.goal_id_, self.goal_is_ours_,
       self.goal_pending_, self.contact_goal_now_, self.answered_mode_, self.answered_flight_, self.answered_morph_,
-      self.answered_contact_, self.errors_);
+      self.answered_contact_, self.errors_, self.base_);
   }
 
   /// After a start: whether it is known what the rotors do and what follows from it.
@@ -103,6 +106,9 @@ class ControlService final : public runtime::Service {
   void take_chain(TimePoint now) noexcept;
   void take_requests(TimePoint now) noexcept;
   void take_wrenches(TimePoint now) noexcept;
+  void take_base_reference(TimePoint now) noexcept;
+  void follow_integrals(const robot::Vector3& linear_W_m_s2, const robot::Vector3& angular_W_rad_s2,
+                        double now_s) noexcept;
 
   void take_goals(TimePoint now) noexcept;
   void take_flight_goal(const msg::FlightGoal& goal, TimePoint now) noexcept;
@@ -135,6 +141,7 @@ class ControlService final : public runtime::Service {
   void judge(TimePoint now) noexcept;
   void follow_mode(TimePoint now) noexcept;
   void write_rotors(TimePoint now) noexcept;
+  void write_base_reference(TimePoint now) noexcept;
   void write_idle(TimePoint now) noexcept;
   robot::Wrench feed_forward(double dt_s) noexcept;
 
@@ -142,9 +149,10 @@ class ControlService final : public runtime::Service {
   const msg::DockingState& docking_now() const;
   static bool is_docking(const msg::DockingState& state);
   bool in_chain() const { return reference_.in_chain(); }
+  bool is_base() const { return in_chain() && view_.base_id == config_.module_id; }
   /// In a chain the base holds the place, and whoever sees it a little elsewhere gives way: integrals that disagree
-  /// would pull against each other for ever.
-  bool integrates() const { return config_.integrate_all || !in_chain() || view_.base_id == config_.module_id; }
+  /// would pull against each other for ever. The others fly what the base's integrals become.
+  bool integrates() const { return config_.integrate_all || !in_chain() || is_base(); }
   bool is_member(std::uint32_t module_id) const;
   void answer(msg::GoalKind kind, std::uint64_t correlation_id, msg::GoalPhase phase, std::string_view reason,
               TimePoint now) noexcept;
@@ -181,7 +189,8 @@ class ControlService final : public runtime::Service {
   robot::Wrench external_W_;
   robot::Wrench common_W_;  // our share of what acts on the whole chain, weighed with the members that are fresh
   robot::ModelErrors errors_ = robot::ModelErrors::Zero();  // of the airframe, as estimation found them
-  robot::Pose X_WM_base_;                                   // where the base of the chain stands, smoothed
+  msg::BaseReference base_;      // the newest of the base of our chain, if its epoch is the view's
+  TimePoint base_written_at_{};  // when we are the base
   bool duplicate_id_ = false;
   msg::DockingState docking_;
   msg::ChainView view_;  // the active one
@@ -200,6 +209,8 @@ class ControlService final : public runtime::Service {
   std::uint64_t answered_mode_ = 0, answered_flight_ = 0, answered_morph_ = 0, answered_contact_ = 0;
   FlightMode reported_mode_ = FlightMode::disarmed;
 
+  std::uint64_t rejected_ = 0;  // references that are none
+
   bus::Reader<msg::ModuleState> module_state_;
   bus::Reader<msg::JointState> joint_state_;
   bus::Reader<msg::RotorState> rotor_state_;
@@ -215,7 +226,9 @@ class ControlService final : public runtime::Service {
   bus::Reader<msg::MorphGoal> morph_goal_;
   bus::Reader<msg::ContactGoal> contact_goal_;
   bus::Reader<msg::DockingReference> docking_reference_;
+  bus::Reader<msg::BaseReference> base_reference_;
   bus::Writer<msg::RotorCommand> rotor_command_;
+  bus::Writer<msg::BaseReference> base_reference_out_;
   bus::Writer<msg::GoalStatus> goal_status_;
   bus::Writer<msg::Event> event_;
 };

@@ -7,8 +7,6 @@
 namespace eciton::control {
 namespace {
 
-Fence everywhere() { return {robot::Vector3::Constant(-1e9), robot::Vector3::Constant(1e9)}; }
-
 /// A tracked reference goes along the fence, not through it.
 void keep_inside(const Fence& fence, robot::PoseReference& moving) {
   for (int k = 0; k < 3; ++k) {
@@ -250,9 +248,10 @@ void ControlService::take_docking_reference(const msg::DockingReference& referen
       reference.epoch != 0 && in_chain() && reference.epoch == view_.active_epoch && is_member(reference.module_id);
   if (!alone && !of_chain) return;
   if (!decide(mode_, FlightRequest::go_to, conditions_).accepted) return;
-  if (check_pose(reference.p_WM_m, reference.q_WM, 0, {.fence = everywhere(), .height_m_min = -1e9}) ||
-      !robot::vector(reference.v_WM_m_s).allFinite() || !robot::vector(reference.w_WM_M_rad_s).allFinite()) {
-    return;  // not a reference: the last one is held
+  if (!is_pose(reference.p_WM_m, reference.q_WM) || !robot::vector(reference.v_WM_m_s).allFinite() ||
+      !robot::vector(reference.w_WM_M_rad_s).allFinite()) {
+    ++rejected_;  // the last one is held
+    return;
   }
   mode_ = FlightMode::hover;
   goal_pending_ = false;

@@ -97,7 +97,7 @@ void FlightReference::stand_by(const PoseReference& own, const Pose& X_WM_base, 
   // Where the shared base puts this module, and where it is by its own lights: biases of its sensors, of the
   // others' and of the joints. Flown on with, so that joining moves nothing.
   const PoseReference shared = own_part(now_s);
-  offset_p_ = own.p_WM - shared.p_WM;
+  offset_p_ = motion_.at(now_s).R_WM.transpose() * (own.p_WM - shared.p_WM);
   offset_R_ = shared.R_WM.transpose() * own.R_WM;
   slowing_v_ = own.v_WM - shared.v_WM;
   joined_s_ = now_s;
@@ -136,7 +136,11 @@ PoseReference FlightReference::own_part(double now_s) const {
   std::array<PoseReference, robot::members_max> members;
   members_at(now_s, members);
   PoseReference own = members[place_.own];
-  own.p_WM += offset_p_;
+  const PoseReference& base = members[place_.base];
+  const robot::Vector3 &w = base.w_WM_M, turning = w.cross(offset_p_);
+  own.p_WM += base.R_WM * offset_p_;
+  own.v_WM += base.R_WM * turning;
+  own.a_WM += base.R_WM * (base.alpha_WM_M.cross(offset_p_) + w.cross(turning));
   // A speed that the others do not share runs out, without a step in it or in the acceleration.
   const double s = std::max(0.0, now_s - joined_s_) / slowing_time_s, left = std::exp(-s);
   own.p_WM += slowing_v_ * slowing_time_s * (2 - (2 + s) * left);

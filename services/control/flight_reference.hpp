@@ -67,6 +67,7 @@ class FlightReference {
   /// In a chain: what the shared base and joints say of every member, the own offset left out.
   void members_at(double now_s, std::span<robot::PoseReference> members) const;
   bool in_chain() const { return in_chain_; }
+  const ChainPlace& place() const { return place_; }
   /// Whether the last motion has come to its end.
   bool arrived(double now_s) const;
   /// Also where a tracked reference has been left to stand.
@@ -104,9 +105,11 @@ class FlightReference {
 
   bool in_chain_ = false;
   ChainPlace place_;
-  robot::Vector3 offset_p_ = robot::Vector3::Zero();      // from what the shared base says to where this
-  robot::Matrix3 offset_R_ = robot::Matrix3::Identity();  // module sees itself, fixed when it joined
-  robot::Vector3 slowing_v_ = robot::Vector3::Zero();     // its speed when it joined, which runs out
+  // From what the shared base says to where this module sees itself, fixed when it joined: the position in the base's
+  // axes, the attitude in the module's.
+  robot::Vector3 offset_p_ = robot::Vector3::Zero();
+  robot::Matrix3 offset_R_ = robot::Matrix3::Identity();
+  robot::Vector3 slowing_v_ = robot::Vector3::Zero();  // its speed when it joined, which runs out
   double joined_s_ = 0;
   robot::JointTrajectory joints_;  // of all members
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <limits>
 
 namespace eciton::control {
 
@@ -39,6 +40,12 @@ double low_of(int axis, double height_m_low, const Fence& fence) {
 double lowest(const GoalLimits& limits) { return std::max(limits.height_m_min, limits.fence.low_W.z()); }
 
 }  // namespace
+
+bool is_pose(const std::array<double, 3>& p_WM_m, const std::array<double, 4>& q_WM) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const Fence everywhere{Vector3::Constant(-inf), Vector3::Constant(inf)};
+  return !check_pose(p_WM_m, q_WM, 0, {.fence = everywhere, .height_m_min = -inf});
+}
 
 std::optional<GoalFault> check_pose(const std::array<double, 3>& p_WM_m, const std::array<double, 4>& q_WM,
                                     std::size_t waypoint, const GoalLimits& limits) {

@@ -24,6 +24,8 @@ struct GoalFault {
   std::array<char, 128> text{};
 };
 
+/// Finite, and a rotation.
+bool is_pose(const std::array<double, 3>& p_WM_m, const std::array<double, 4>& q_WM);
 /// `waypoint`: its number in a path, from 1; 0: the goal itself.
 std::optional<GoalFault> check_pose(const std::array<double, 3>& p_WM_m, const std::array<double, 4>& q_WM,
                                     std::size_t waypoint, const GoalLimits& limits);

@@ -35,7 +35,7 @@ PoseGains between(const PoseGains& a, const PoseGains& b, double s) {
           mix(a.ap_1_s2, b.ap_1_s2), mix(a.ai_1_s3, b.ai_1_s3), mix(a.ad_1_s, b.ad_1_s)};
 }
 
-PoseGains gains_assembled() { return gains(6, 1, 4.5, 40, 4, 12); }
+PoseGains gains_assembled() { return gains(6, 2, 4.5, 40, 8, 12); }
 PoseGains gains_free() { return gains(20, 2, 8, 60, 4, 14); }
 
 PoseControl::PoseControl(const PoseControlConfig& config)

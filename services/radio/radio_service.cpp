@@ -71,12 +71,13 @@ void RadioService::add_route(const bus::TopicInfo& topic) {
   const auto interval = [](double rate_Hz) { return from_s(1 / rate_Hz); };
   const bool wrench = topic.name == topics::external_wrench.name;
   const bool joints = topic.name == topics::joint_state.name;
-  // A docking module's own reference is for its own control; that of a chain is for all members.
-  const bool chained = topic.name == topics::docking_reference.name;
+  // A docking module's own reference is for its own control; those of a chain are for all members.
+  const bool docking = topic.name == topics::docking_reference.name;
+  const bool chained = docking || topic.name == topics::base_reference.name;
   Duration pace{};
   if (wrench) pace = interval(config_.wrench_rate_Hz);
   if (joints) pace = interval(config_.joint_rate_Hz);
-  if (topic.name == topics::module_state.name || chained) pace = interval(config_.state_rate_Hz);
+  if (topic.name == topics::module_state.name || docking) pace = interval(config_.state_rate_Hz);
   const bool goal = topic.qos == bus::QosClass::command;
   routes_.push_back({.from_ring = ring_.create_raw_reader(topic),
                      .to_swarm = swarm_.create_raw_writer(topic),

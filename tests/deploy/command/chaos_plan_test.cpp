@@ -36,10 +36,10 @@ bool by_stage(const ChaosPlan& plan) {
 }
 
 TEST(ChaosPlanTest, TheMatrixIsWhole) {
-  // Two kinds on six processes, two on the link; three stages; three choices of vendors.
+  // Two kinds on six processes, four on link and disk; three stages; three choices of vendors.
   const auto plans = full_matrix(3);
   ASSERT_EQ(plans.size(), 3u);
-  EXPECT_EQ(cells_of(plans), (2u * 6u + 2u) * 3u * 3u);
+  EXPECT_EQ(cells_of(plans), (2u * 6u + 4u) * 3u * 3u);
   for (const ChaosPlan& plan : plans) {
     EXPECT_TRUE(by_stage(plan));
     std::set<std::string> texts;
