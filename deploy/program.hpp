@@ -17,6 +17,7 @@ struct ProgramOptions {
   std::string log_level = "info";
   std::vector<std::string> names;  // services to run
   std::string checkpoints;         // directory of their checkpoints; empty: none
+  std::string faults;              // directory of their fault records; empty: none
 };
 
 /// Throws BadInput; prints help and exits with 0 when asked for it.

@@ -160,12 +160,24 @@ std::string fault_text(const msg::Fault& fault) {
   return text + ": " + std::string(fault.text.view());
 }
 
+/// The file with what the service knew and did before; empty: there is none.
+std::string record_of(const Watched& w, const msg::Fault& fault) {
+  if (fault.record.empty()) return {};
+  return (w.module.faults / fault.record.view()).string();
+}
+
 void print_faults(const Watched& w) {
   if (w.ear->faults().empty()) return;
   std::printf("  errors: %zu; the last faults:\n", w.ear->errors());
   for (const msg::Fault& fault : w.ear->faults()) {
     std::printf("  %10s ago  %-8s %s\n", ago(w.ear->age_of(fault.stamp_ns)).c_str(), name_of(fault.severity).c_str(),
                 fault_text(fault).c_str());
+    const std::string record = record_of(w, fault);
+    if (record.empty()) continue;
+    // Known only for modules of this host.
+    const bool missing = !w.module.faults.empty() && !std::filesystem::exists(record);
+    std::printf("  %14s  what it knew and did before: %s%s\n", "", record.c_str(),
+                missing ? " (gone, or never written: see its log)" : "");
   }
 }
 
@@ -210,7 +222,10 @@ Json module_json(const Watched& w) {
     aged["age_s"] = to_s(w.ear->age_of(sample.stamp_ns));
     return aged;
   };
-  for (const msg::Fault& fault : w.ear->faults()) json["faults"].push_back(with_age(fault));
+  for (const msg::Fault& fault : w.ear->faults()) {
+    json["faults"].push_back(with_age(fault));
+    json["faults"].back()["record_file"] = record_of(w, fault);
+  }
   if (const auto mode = w.ear->flight_mode()) json["flight_mode"] = name_of(*mode);
   if (w.ear->state()) json["module_state"] = with_age(*w.ear->state());
   if (w.ear->docking()) json["docking_state"] = with_age(*w.ear->docking());

@@ -34,7 +34,8 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
       .domain = config.module_ring.domain,
       .network_interface = config.module_ring.network_interface,
       .claims = {"module id " + std::to_string(config.id), "DDS domain " + std::to_string(config.module_ring.domain)},
-      .processes = {}};
+      .processes = {},
+      .faults = config.recorder.directory};
   // In lockstep nothing hangs on its own: the world waits for the slowest.
   const Duration watchdog = config.clock == "wall" ? from_s(config.watchdog_s) : Duration::zero();
   plan.processes.push_back(
@@ -47,7 +48,10 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
     // In lockstep nothing is restarted: the world waits for the dead.
     plan.processes.back().has_checkpoints = config.clock == "wall";
   }
-  for (PlannedProcess& process : plan.processes) process.child.watchdog = watchdog;
+  for (PlannedProcess& process : plan.processes) {
+    process.child.watchdog = watchdog;
+    process.records_faults = process.name == "hardware" || process.name == "control" || process.name == "services";
+  }
   return plan;
 }
 

@@ -252,8 +252,14 @@ void ControlService::take_docking_reference(const msg::DockingReference& referen
   if (!decide(mode_, FlightRequest::go_to, conditions_).accepted) return;
   if (check_pose(reference.p_WM_m, reference.q_WM, 0, {.fence = everywhere(), .height_m_min = -1e9}) ||
       !robot::vector(reference.v_WM_m_s).allFinite() || !robot::vector(reference.w_WM_M_rad_s).allFinite()) {
-    return;  // not a reference: the last one is held
+    if (!bad_reference_) {
+      faults_.raise(now, msg::Severity::warning, "docking",
+                    "a docking reference with something that is no number: the last one is held");
+    }
+    bad_reference_ = true;
+    return;
   }
+  bad_reference_ = false;
   mode_ = FlightMode::hover;
   goal_pending_ = false;
   robot::PoseReference moving;
