@@ -70,6 +70,7 @@ void set_identity(ModuleConfig& config) {
   config.radio.module_id = config.id;
   config.radio.name = config.name;
   config.radio.airframe = config.airframe;
+  config.radio.ports = static_cast<std::uint32_t>(robot::legion(config.airframe == "legion-lidar").ports.size());
 }
 
 void set_fault_directory(ModuleConfig& config, const std::string& directory) {

@@ -146,6 +146,17 @@ void print_services(const Watched& w) {
   }
 }
 
+void print_refused_claims(const Watched& w) {
+  if (!w.ear->radio()) return;
+  const msg::RadioState& r = *w.ear->radio();
+  if (r.claims_malformed + r.claims_foreign + r.claims_unknown + r.claims_no_port == 0) return;
+  const auto number = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
+  std::printf(
+      "  link claims that were not let in: %llu malformed, %llu not from that module's radio, %llu of unknown "
+      "modules, %llu for ports that do not exist\n",
+      number(r.claims_malformed), number(r.claims_foreign), number(r.claims_unknown), number(r.claims_no_port));
+}
+
 void print_restarts(const RunningModule& module) {
   for (const RunningProcess& process : module.processes) {
     if (process.restarts == 0) continue;
@@ -230,6 +241,7 @@ Json module_json(const Watched& w) {
   if (w.ear->state()) json["module_state"] = with_age(*w.ear->state());
   if (w.ear->docking()) json["docking_state"] = with_age(*w.ear->docking());
   if (w.ear->view()) json["chain_view"] = with_age(*w.ear->view());
+  if (w.ear->radio()) json["radio_state"] = with_age(*w.ear->radio());
   return json;
 }
 
@@ -243,6 +255,7 @@ int print_status(const StatusOptions& options) {
   for (const Watched& w : watched) {
     print_states(w);
     print_services(w);
+    print_refused_claims(w);
     all_well = print_silent(w) && all_well;
     print_restarts(w.module);
     print_faults(w);

@@ -45,9 +45,9 @@ struct ControlConfig {
   bool separation = true;                          // keeps its distance from modules it does not dock with
   std::array<double, 3> fence_low_m{-50, -50, 0};  // of the box, in W, that centres of mass stay in
   std::array<double, 3> fence_high_m{50, 50, 30};
-  double height_m_min = 0.3;         // of goals
-  double observer_gain_1_s = 10;     // as estimation's config says: the law's rate follows from it
-  runtime::RecorderConfig recorder;  // as the module's config says
+  double height_m_min = 0.3;           // of goals
+  double observer_gain_1_s = 10;       // as estimation's config says: the law's rate follows from it
+  runtime::RecorderConfig recorder{};  // as the module's config says
 
   template <class V>
   void visit_fields(V& v) {
