@@ -64,11 +64,18 @@ void set_identity(ModuleConfig& config) {
   config.estimation.module_id = config.id;
   config.control.module_id = config.id;
   config.control.observer_gain_1_s = config.estimation.observer_gain_1_s;
+  config.control.recorder = config.recorder;
   config.docking.module_id = config.id;
   config.joints.module_id = config.id;
   config.radio.module_id = config.id;
   config.radio.name = config.name;
   config.radio.airframe = config.airframe;
+  config.radio.ports = static_cast<std::uint32_t>(robot::legion(config.airframe == "legion-lidar").ports.size());
+}
+
+void set_fault_directory(ModuleConfig& config, const std::string& directory) {
+  if (config.recorder.directory.empty()) config.recorder.directory = directory;
+  config.control.recorder = config.recorder;
 }
 
 Result<ModuleConfig> load_module_config(const std::vector<std::string>& files,

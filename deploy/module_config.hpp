@@ -8,6 +8,7 @@
 
 #include "core/base/config.hpp"
 #include "core/bus/participant.hpp"
+#include "core/runtime/flight_recorder.hpp"
 #include "services/control/control_service.hpp"
 #include "services/docking/docking_service.hpp"
 #include "services/estimation/estimation_service.hpp"
@@ -59,6 +60,7 @@ struct ModuleConfig {
   double watchdog_s = 0.4;  // a process that has not stepped for so long hangs, and is started again; 0: it is left
   double hardware_watchdog_s = 0.08;  // the hardware host: after 50 ms without it the board stops the rotors
   int realtime_priority = 0;          // SCHED_FIFO; 0: leave it
+  runtime::RecorderConfig recorder;   // without a directory: that of the supervisor, if there is one
   HardwareConfig hal;
   estimation::EstimationConfig estimation;
   control::ControlConfig control;
@@ -81,6 +83,7 @@ struct ModuleConfig {
     v("watchdog_s", watchdog_s, in_range(0, 60));
     v("hardware_watchdog_s", hardware_watchdog_s, in_range(0, 60));
     v("realtime_priority", realtime_priority, in_range(0, 90));
+    v("recorder", recorder);
     v("hal", hal);
     v("estimation", estimation);
     v("control", control);
@@ -101,6 +104,9 @@ constexpr std::uint32_t module_ring_domain(std::uint32_t module_id) { return 10 
 
 /// Tells every part of the config whose it is, from `id` and `name`.
 void set_identity(ModuleConfig& config);
+
+/// Where its fault records go, unless its config says so itself; empty: nowhere.
+void set_fault_directory(ModuleConfig& config, const std::string& directory);
 
 /// Layers files and --set assignments, checks them and fills in what follows from the id.
 Result<ModuleConfig> load_module_config(const std::vector<std::string>& files,

@@ -29,6 +29,8 @@ ProgramOptions parse_options(int argc, char** argv, const std::string& purpose, 
       ->allow_extra_args(false);
   app.add_option("--set", options.assignments, "key=value, over the files")->allow_extra_args(false);
   app.add_option("--log", options.log_level, "trace, debug, info, warn, error or off");
+  if (takes.faults)
+    app.add_option("--faults", options.faults, "directory for what was known and done before each fault");
   if (takes.names) app.add_option("names", options.names, "services to run")->required();
   if (takes.checkpoints) {
     app.add_option("--checkpoints", options.checkpoints, "directory where services that died left their state")

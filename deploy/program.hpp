@@ -17,12 +17,14 @@ struct ProgramOptions {
   std::string log_level = "info";
   std::vector<std::string> names;  // services to run
   std::string checkpoints;         // directory of their checkpoints; empty: none
+  std::string faults;              // directory of their fault records; empty: none
 };
 
 /// What not all of them understand.
 struct ProgramTakes {
   bool names = false;
   bool checkpoints = false;
+  bool faults = false;
 };
 
 /// Throws BadInput; prints help and exits with 0 when asked for it.

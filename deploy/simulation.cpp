@@ -47,7 +47,7 @@ struct Simulation::SimulatedModule {
         swarm(config.swarm_participant("radio"), &ring.waker()),
         listener(std::make_unique<bus::Participant>(config.module_participant("listener"))),
         sense(ring, {.module_id = config.id}, devices),
-        act(ring, {.module_id = config.id}, airframe, devices) {
+        act(ring, {.module_id = config.id, .recorder = config.recorder}, airframe, devices) {
     config.radio.incarnation = incarnation_at(start);
     config.docking.incarnation = incarnation_at(start);
     for (const std::string_view name : service_names) {
@@ -134,6 +134,7 @@ void Simulation::add_module(std::uint32_t id) {
   config.module_ring.domain = module_ring_domain(id);
   const auto& mute = config_.mute_claims;
   if (std::find(mute.begin(), mute.end(), id) != mute.end()) config.docking.claims_muted = true;
+  if (!config.recorder.directory.empty()) config.recorder.directory += "/" + config.name;
   set_identity(config);
   auto module = std::make_unique<SimulatedModule>(config, *world_, start_);
   static_cast<WiredWorld&>(*wired_).connect(module->link);

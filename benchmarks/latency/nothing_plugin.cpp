@@ -59,6 +59,7 @@ const eciton_plugin plugin = [] {
   made.reader_take = take;
   made.reader_matched = [](eciton_reader*) { return 1u; };
   made.reader_losses = [](eciton_reader*, eciton_reader_losses* losses) { *losses = {}; };
+  made.reader_origin = [](eciton_reader*) -> uint64_t { return 0; };
   return made;
 }();
 

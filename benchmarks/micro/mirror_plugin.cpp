@@ -77,6 +77,8 @@ std::uint32_t writer_matched(eciton_writer*) { return 1; }
 std::uint32_t reader_matched(eciton_reader*) { return 1; }
 void reader_losses(eciton_reader*, eciton_reader_losses* losses) { *losses = {}; }
 
+std::uint64_t reader_origin(eciton_reader*) { return 0; }
+
 }  // namespace
 
 extern "C" const eciton_plugin* eciton_dds_plugin(void) {
@@ -94,6 +96,7 @@ extern "C" const eciton_plugin* eciton_dds_plugin(void) {
                                     reader_destroy,
                                     reader_take,
                                     reader_matched,
-                                    reader_losses};
+                                    reader_losses,
+                                    reader_origin};
   return &plugin;
 }

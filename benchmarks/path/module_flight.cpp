@@ -80,6 +80,7 @@ Plan plan(const PathOptions& options, const FlightVariant& variant) {
   if (variant.layout == "one-process") {
     processes.resize(1);
     processes[0].name = processes[0].child.name = "module";
+    processes[0].records_faults = processes[0].has_checkpoints = false;
     processes[0].child.arguments = {program(options, "eciton-bench-module"), "--config", file, "--inside",
                                     plan.inside_file};
   } else if (variant.layout == "services" && !options.whole_module) {

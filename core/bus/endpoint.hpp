@@ -70,6 +70,9 @@ class ReaderCore {
   /// How many samples were queued that may trigger a step.
   std::uint64_t news() const noexcept { return news_; }
 
+  /// Stands for this participant's own writers, as an origin.
+  static constexpr std::uint64_t own_origin = ~std::uint64_t{0};
+
   /// Whether samples that come from now on signal the participant's waker; look for those already there by fetch().
   void set_wakes(bool wakes) noexcept { wakes_.store(wakes); }
 
@@ -80,6 +83,9 @@ class ReaderCore {
 
  protected:
   friend class WriterCore;
+  /// Within accept: which participant the sample comes from; 0: not known.
+  std::uint64_t origin() const noexcept;
+
   Participant& participant_;
   TopicInfo topic_;
   mutable ReaderStatistics statistics_;  // the vendor's part is fetched when asked for
@@ -89,6 +95,7 @@ class ReaderCore {
  private:
   std::string name_;
   eciton_reader* handle_ = nullptr;
+  bool from_own_ = false;  // what is being accepted
   std::atomic<bool> fresh_{true};
   std::atomic<bool> wakes_;
 };

@@ -37,7 +37,7 @@ class Inbox {
       : keep_last_(keep_last), ordered_(ordered), slots_(capacity + 1), newest_(ordered ? capacity : 0) {}
 
   /// Returns the queued sample, nullptr if it was dropped.
-  const T* push(std::span<const std::uint8_t> cdr, ReaderStatistics& statistics) {
+  const T* push(std::span<const std::uint8_t> cdr, ReaderStatistics& statistics, std::uint64_t origin = 0) {
     ++statistics.received;
     // Decoded in place, into the slot that is always free: nothing gives way to a sample that is not wanted.
     Slot& slot = slots_[next(first_, count_)];
@@ -46,6 +46,7 @@ class Inbox {
       return nullptr;
     }
     slot.key = key_hash(slot.value);
+    slot.origin = origin;
     if (ordered_ && !is_newest(slot)) {
       ++statistics.dropped_late;
       return nullptr;
@@ -55,6 +56,7 @@ class Inbox {
         Slot& queued = slots_[next(first_, k)];
         if (queued.key != slot.key) continue;
         queued.value = slot.value;
+        queued.origin = origin;
         ++statistics.replaced;
         return &queued.value;
       }
@@ -74,15 +76,20 @@ class Inbox {
   const T* pop() {
     if (count_ == 0) return nullptr;
     const T* value = &slots_[first_].value;
+    origin_ = slots_[first_].origin;
     first_ = next(first_, 1);
     --count_;
     return value;
   }
 
+  /// Of the sample popped last.
+  std::uint64_t origin() const { return origin_; }
+
  private:
   struct Slot {
     T value;
     KeyHash key;
+    std::uint64_t origin = 0;
   };
   struct Newest {
     KeyHash key;
@@ -111,6 +118,7 @@ class Inbox {
   std::vector<Slot> slots_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;
+  std::uint64_t origin_ = 0;
   std::vector<Newest> newest_;
   std::size_t newest_count_ = 0;
 };

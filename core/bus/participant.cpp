@@ -141,6 +141,10 @@ const ReaderStatistics& ReaderCore::statistics() const {
   return statistics_;
 }
 
+std::uint64_t ReaderCore::origin() const noexcept {
+  return from_own_ ? own_origin : participant_.plugin_->reader_origin(handle_);
+}
+
 std::uint32_t ReaderCore::matched() const { return participant_.plugin_->reader_matched(handle_); }
 
 WriterCore::WriterCore(Participant& participant, const TopicInfo& topic)
@@ -163,7 +167,9 @@ bool WriterCore::write(std::span<const std::uint8_t> cdr) noexcept {
   // Composed services share a participant: no network hop between them.
   for (ReaderCore* reader : participant_.readers_) {
     if (reader->name_ != name_) continue;
+    reader->from_own_ = true;
     reader->accept(cdr);
+    reader->from_own_ = false;
     if (reader->wakes_.load()) participant_.waker_->signal();
   }
   for (InlineReaderCore* reader : participant_.inline_readers_) {

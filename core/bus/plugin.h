@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-#define ECITON_PLUGIN_ABI_VERSION 2u
+#define ECITON_PLUGIN_ABI_VERSION 3u
 /* A plugin is lib<prefix><vendor>.so and exports one function of this name. */
 #define ECITON_PLUGIN_PREFIX "eciton_dds_"
 #define ECITON_PLUGIN_ENTRY "eciton_dds_plugin"
@@ -87,6 +87,9 @@ typedef struct eciton_plugin {
                           void* context); /* samples given */
   uint32_t (*reader_matched)(eciton_reader* reader);
   void (*reader_losses)(eciton_reader* reader, eciton_reader_losses* losses); /* since it was created */
+  /* Within the sink: which participant wrote the sample it is given, by a number that all its writers share and no
+   * other has; 0: not known, as in one process it may be. */
+  uint64_t (*reader_origin)(eciton_reader* reader);
 } eciton_plugin;
 
 const eciton_plugin* eciton_dds_plugin(void);

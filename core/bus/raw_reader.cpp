@@ -26,6 +26,7 @@ class RawReader::Core final : public ReaderCore {
     std::copy(cdr.begin(), cdr.end(), slot.bytes.begin());
     slot.size = static_cast<std::uint32_t>(cdr.size());
     slot.key = key;
+    slot.origin = ReaderCore::origin();
   }
 
   bool has_sample() const noexcept override { return count_ > 0; }
@@ -35,14 +36,18 @@ class RawReader::Core final : public ReaderCore {
       const Slot& slot = slots_[first_];
       first_ = (first_ + 1) % slots_.size();
       ++statistics_.delivered;
+      given_origin_ = slot.origin;
       sink(context, std::span(slot.bytes).first(slot.size));
     }
   }
+
+  std::uint64_t given_origin() const { return given_origin_; }
 
  private:
   struct Slot {
     KeyHash key{};
     std::uint32_t size = 0;
+    std::uint64_t origin = 0;
     std::vector<std::uint8_t> bytes;
   };
 
@@ -70,6 +75,7 @@ class RawReader::Core final : public ReaderCore {
   std::vector<Slot> slots_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;
+  std::uint64_t given_origin_ = 0;
 };
 
 RawReader::RawReader(Participant& participant, const TopicInfo& topic)
@@ -77,6 +83,7 @@ RawReader::RawReader(Participant& participant, const TopicInfo& topic)
 RawReader::~RawReader() = default;
 RawReader::RawReader(RawReader&&) noexcept = default;
 
+std::uint64_t RawReader::origin() const { return core_->given_origin(); }
 std::uint32_t RawReader::matched() const { return core_->matched(); }
 const TopicInfo& RawReader::topic() const { return core_->topic(); }
 const ReaderStatistics& RawReader::statistics() const { return core_->statistics(); }

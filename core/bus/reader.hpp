@@ -12,7 +12,8 @@ namespace eciton::bus {
 template <Message T>
 struct Sample {
   T value;
-  Duration age;  // now less the stamp, corrected by what is known of the sender's clock
+  Duration age;              // now less the stamp, corrected by what is known of the sender's clock
+  std::uint64_t origin = 0;  // which participant wrote it, where the reader tells origins; 0: not known
   const T* operator->() const { return &value; }
   const T& operator*() const { return value; }
 };
@@ -33,7 +34,7 @@ class Reader {
         continue;
       }
       core_->count_delivered();
-      return Sample<T>{*value, age};
+      return Sample<T>{*value, age, core_->inbox.origin()};
     }
     return std::nullopt;
   }
@@ -49,6 +50,10 @@ class Reader {
   /// overdue(). For topics whose peers' samples the radio puts on the ring.
   void news_only_of(std::uint32_t module_id) requires requires(T sample) { sample.module_id; }
   { core_->news_of = module_id; }
+
+  /// From here on its samples say which participant wrote them: a number that all writers of one share;
+  /// ReaderCore::own_origin for this one's own.
+  void tell_origins() { core_->tells_origins = true; }
 
   /// Whether the newest sample that came is older than the topic's deadline, or none came yet.
   bool overdue() const { return core_->participant().now() - core_->newest_stamp() > core_->topic().deadline; }
@@ -69,7 +74,7 @@ class Reader {
                 TypeTraits<T>::keyed ? plugin_qos(topic.qos, true).instances_max : plugin_qos(topic.qos, false).depth,
                 topic.qos == QosClass::sensor) {}
     void accept(std::span<const std::uint8_t> cdr) noexcept override {
-      const T* value = inbox.push(cdr, statistics_);
+      const T* value = inbox.push(cdr, statistics_, tells_origins ? origin() : 0);
       if (value == nullptr || !is_news(*value)) return;
       ++news_;
       newest_stamp_ = std::max(newest_stamp_, from_ns(value->stamp_ns));
@@ -91,6 +96,7 @@ class Reader {
     void count_delivered() { ++statistics_.delivered; }
     Inbox<T> inbox;
     std::optional<std::uint32_t> news_of;
+    bool tells_origins = false;
   };
   std::unique_ptr<Core> core_;
 };
@@ -105,6 +111,8 @@ class RawReader {
 
   /// Gives every sample that is there to `sink`; the bytes are valid during the call.
   void take(Sink sink, void* context) noexcept;
+  /// Within the sink: as a Sample has it.
+  std::uint64_t origin() const;
   std::uint32_t matched() const;
   const TopicInfo& topic() const;
   const ReaderStatistics& statistics() const;

@@ -3,9 +3,10 @@
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
-#include <spdlog/spdlog.h>
 
 #include <array>
+
+#include "core/base/log.hpp"
 
 namespace eciton::runtime {
 

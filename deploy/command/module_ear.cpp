@@ -13,6 +13,7 @@ ModuleEar::ModuleEar(const bus::ParticipantConfig& config)
       state_reader_(participant_.create_reader(topics::module_state)),
       docking_reader_(participant_.create_reader(topics::docking_state)),
       view_reader_(participant_.create_reader(topics::chain_view)),
+      radio_reader_(participant_.create_reader(topics::radio_state)),
       fault_reader_(participant_.create_reader(topics::fault)) {}
 
 void ModuleEar::poll() {
@@ -31,6 +32,9 @@ void ModuleEar::poll() {
   }
   while (const auto view = view_reader_.take()) {
     if (view->value.module_id == own) view_ = view->value;
+  }
+  while (const auto radio = radio_reader_.take()) {
+    if (radio->value.module_id == own) radio_ = radio->value;
   }
   while (const auto fault = fault_reader_.take()) {
     if (fault->value.module_id != own) continue;

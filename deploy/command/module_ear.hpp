@@ -30,6 +30,7 @@ class ModuleEar {
   const std::optional<msg::ModuleState>& state() const { return state_; }
   const std::optional<msg::DockingState>& docking() const { return docking_; }
   const std::optional<msg::ChainView>& view() const { return view_; }
+  const std::optional<msg::RadioState>& radio() const { return radio_; }
   /// The last ones, in the order of their stamps.
   const std::deque<msg::Fault>& faults() const { return faults_; }
   /// Of severity error, the kept ones and those before, as far back as their writers keep them.
@@ -45,11 +46,13 @@ class ModuleEar {
   bus::Reader<msg::ModuleState> state_reader_;
   bus::Reader<msg::DockingState> docking_reader_;
   bus::Reader<msg::ChainView> view_reader_;
+  bus::Reader<msg::RadioState> radio_reader_;
   bus::Reader<msg::Fault> fault_reader_;
   std::map<std::string, HeardHeartbeat> heartbeats_;
   std::optional<msg::ModuleState> state_;
   std::optional<msg::DockingState> docking_;
   std::optional<msg::ChainView> view_;
+  std::optional<msg::RadioState> radio_;
   std::deque<msg::Fault> faults_;
   std::size_t errors_ = 0;
 };

@@ -146,6 +146,17 @@ void print_services(const Watched& w) {
   }
 }
 
+void print_refused_claims(const Watched& w) {
+  if (!w.ear->radio()) return;
+  const msg::RadioState& r = *w.ear->radio();
+  if (r.claims_malformed + r.claims_foreign + r.claims_unknown + r.claims_no_port == 0) return;
+  const auto number = [](std::uint64_t count) { return static_cast<unsigned long long>(count); };
+  std::printf(
+      "  link claims that were not let in: %llu malformed, %llu not from that module's radio, %llu of unknown "
+      "modules, %llu for ports that do not exist\n",
+      number(r.claims_malformed), number(r.claims_foreign), number(r.claims_unknown), number(r.claims_no_port));
+}
+
 void print_restarts(const RunningModule& module) {
   for (const RunningProcess& process : module.processes) {
     if (process.restarts == 0) continue;
@@ -160,12 +171,24 @@ std::string fault_text(const msg::Fault& fault) {
   return text + ": " + std::string(fault.text.view());
 }
 
+/// The file with what the service knew and did before; empty: there is none.
+std::string record_of(const Watched& w, const msg::Fault& fault) {
+  if (fault.record.empty()) return {};
+  return (w.module.faults / fault.record.view()).string();
+}
+
 void print_faults(const Watched& w) {
   if (w.ear->faults().empty()) return;
   std::printf("  errors: %zu; the last faults:\n", w.ear->errors());
   for (const msg::Fault& fault : w.ear->faults()) {
     std::printf("  %10s ago  %-8s %s\n", ago(w.ear->age_of(fault.stamp_ns)).c_str(), name_of(fault.severity).c_str(),
                 fault_text(fault).c_str());
+    const std::string record = record_of(w, fault);
+    if (record.empty()) continue;
+    // Known only for modules of this host.
+    const bool missing = !w.module.faults.empty() && !std::filesystem::exists(record);
+    std::printf("  %14s  what it knew and did before: %s%s\n", "", record.c_str(),
+                missing ? " (gone, or never written: see its log)" : "");
   }
 }
 
@@ -210,11 +233,15 @@ Json module_json(const Watched& w) {
     aged["age_s"] = to_s(w.ear->age_of(sample.stamp_ns));
     return aged;
   };
-  for (const msg::Fault& fault : w.ear->faults()) json["faults"].push_back(with_age(fault));
+  for (const msg::Fault& fault : w.ear->faults()) {
+    json["faults"].push_back(with_age(fault));
+    json["faults"].back()["record_file"] = record_of(w, fault);
+  }
   if (const auto mode = w.ear->flight_mode()) json["flight_mode"] = name_of(*mode);
   if (w.ear->state()) json["module_state"] = with_age(*w.ear->state());
   if (w.ear->docking()) json["docking_state"] = with_age(*w.ear->docking());
   if (w.ear->view()) json["chain_view"] = with_age(*w.ear->view());
+  if (w.ear->radio()) json["radio_state"] = with_age(*w.ear->radio());
   return json;
 }
 
@@ -228,6 +255,7 @@ int print_status(const StatusOptions& options) {
   for (const Watched& w : watched) {
     print_states(w);
     print_services(w);
+    print_refused_claims(w);
     all_well = print_silent(w) && all_well;
     print_restarts(w.module);
     print_faults(w);

@@ -39,7 +39,7 @@ class SimulatedHost {
                lockstep_ ? runtime::ServiceGroup::Pacing::lockstep : runtime::ServiceGroup::Pacing::wall_clock) {
     if (lockstep_) ring_.set_all_wake(false);
     sense_.emplace(ring_, hal::SenseConfig{.module_id = config.id}, devices_);
-    act_.emplace(ring_, hal::ActConfig{.module_id = config.id}, airframe_, devices_);
+    act_.emplace(ring_, hal::ActConfig{.module_id = config.id, .recorder = config.recorder}, airframe_, devices_);
     sense_entry_ = &group_.add(*sense_);
     act_entry_ = &group_.add(*act_);
     commands_ = act_entry_->schedule.trigger;
@@ -135,9 +135,9 @@ class SimulatedHost {
 
 int run(int argc, char** argv) {
   const deploy::ProgramOptions options =
-      deploy::parse_options(argc, argv, "The hardware host of one module.", {.checkpoints = true});
-  const deploy::ModuleConfig config =
-      value_or_throw(deploy::load_module_config(options.config_files, options.assignments));
+      deploy::parse_options(argc, argv, "The hardware host of one module.", {.checkpoints = true, .faults = true});
+  deploy::ModuleConfig config = value_or_throw(deploy::load_module_config(options.config_files, options.assignments));
+  deploy::set_fault_directory(config, options.faults);
   if (config.hal.socket.empty()) throw BadInput{{"hal.socket is missing; expected the path of the world's socket"}};
   start_log(config.name + "/hardware", options.log_level);
   runtime::StopFlag stop;

@@ -27,9 +27,10 @@ std::unique_ptr<runtime::Executor> make_executor(const deploy::ModuleConfig& con
 }
 
 int run(int argc, char** argv) {
-  const deploy::ProgramOptions options =
-      deploy::parse_options(argc, argv, "Runs services of one module.", {.names = true, .checkpoints = true});
+  const deploy::ProgramOptions options = deploy::parse_options(argc, argv, "Runs services of one module.",
+                                                               {.names = true, .checkpoints = true, .faults = true});
   deploy::ModuleConfig config = value_or_throw(deploy::load_module_config(options.config_files, options.assignments));
+  deploy::set_fault_directory(config, options.faults);
   config.radio.incarnation = config.docking.incarnation = deploy::incarnation_at(wall_now());
   const std::string process = options.names.size() == 1 ? options.names.front() : "services";
   start_log(config.name + "/" + process, options.log_level);

@@ -46,8 +46,10 @@ Launch::Launch(LaunchPlan plan, RuntimeDirectory directory, std::vector<HostClai
       directory_(std::move(directory)),
       supervisor_(SupervisorConfig{.log_directory = directory_.path()}) {
   for (PlannedProcess& process : plan_.processes) {
-    if (!process.has_checkpoints) continue;
-    process.child.arguments.insert(process.child.arguments.end(), {"--checkpoints", directory_.path().string()});
+    std::vector<std::string>& arguments = process.child.arguments;
+    const fs::path& own = directory_.path();
+    if (process.has_checkpoints) arguments.insert(arguments.end(), {"--checkpoints", own.string()});
+    if (process.records_faults) arguments.insert(arguments.end(), {"--faults", (own / faults_name).string()});
   }
 }
 
@@ -76,7 +78,8 @@ void Launch::write_state() {
                       .domain = plan_.domain,
                       .network_interface = plan_.network_interface,
                       .network_namespace = plan_.network_namespace,
-                      .processes = {}};
+                      .processes = {},
+                      .faults = plan_.faults.empty() ? directory_.path() / faults_name : plan_.faults};
   const std::vector<ChildReport> reports = supervisor_.reports();
   for (std::size_t k = 0; k < reports.size(); ++k) {
     state.processes.push_back({.name = plan_.processes[k].name,

@@ -18,6 +18,7 @@ struct PlannedProcess {
   std::string vendor;  // empty: it uses none
   ChildSpec child;
   bool has_checkpoints = false;  // in the launch's directory: `--checkpoints` is added to its arguments
+  bool records_faults = false;   // in its subdirectory `faults`: `--faults` is added
 };
 
 struct LaunchPlan {
@@ -28,6 +29,7 @@ struct LaunchPlan {
   std::filesystem::path network_namespace{};  // of that interface; empty: ours
   std::vector<std::string> claims;            // of the host, as "module id 3"
   std::vector<PlannedProcess> processes;
+  std::filesystem::path faults{};  // directory of its fault records; empty: below its runtime directory
 };
 
 class Launch {

@@ -34,7 +34,8 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
       .domain = config.module_ring.domain,
       .network_interface = config.module_ring.network_interface,
       .claims = {"module id " + std::to_string(config.id), "DDS domain " + std::to_string(config.module_ring.domain)},
-      .processes = {}};
+      .processes = {},
+      .faults = config.recorder.directory};
   // In lockstep nothing hangs on its own: the world waits for the slowest.
   const auto on_wall_clock = [&](double s) { return config.clock == "wall" ? from_s(s) : Duration::zero(); };
   const Duration watchdog = on_wall_clock(config.watchdog_s);
@@ -51,6 +52,7 @@ LaunchPlan plan_module(const ModuleConfig& config, const fs::path& config_file,
     process.child.watchdog = process.name == "hardware" ? hardware_watchdog : watchdog;
     // In lockstep nothing is restarted: the world waits for the dead.
     process.has_checkpoints = config.clock == "wall";
+    process.records_faults = process.name == "hardware" || process.name == "control" || process.name == "services";
   }
   return plan;
 }

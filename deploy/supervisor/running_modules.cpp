@@ -16,7 +16,8 @@ RunningModule from_json(const Json& json) {
                        .domain = json.at("domain"),
                        .network_interface = json.at("interface"),
                        .network_namespace = json.at("namespace"),
-                       .processes = {}};
+                       .processes = {},
+                       .faults = json.at("faults").get<std::string>()};
   for (const Json& process : json.at("processes")) {
     module.processes.push_back({.name = process.at("name"),
                                 .vendor = process.at("vendor"),
@@ -46,7 +47,8 @@ std::string to_text(const RunningModule& module) {
                   {"domain", module.domain},
                   {"interface", module.network_interface},
                   {"namespace", module.network_namespace},
-                  {"processes", processes}};
+                  {"processes", processes},
+                  {"faults", module.faults.string()}};
   return json.dump(2) + "\n";
 }
 

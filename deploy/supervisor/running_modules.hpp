@@ -12,6 +12,7 @@
 namespace eciton::deploy {
 
 inline constexpr const char* state_file_name = "state.json";
+inline constexpr const char* faults_name = "faults";  // the directory of what was known and done before each fault
 
 struct RunningProcess {
   std::string name;
@@ -30,6 +31,7 @@ struct RunningModule {
   std::string network_interface;
   std::string network_namespace{};  // of that interface; empty: this host's own
   std::vector<RunningProcess> processes;
+  std::filesystem::path faults{};  // directory of its fault records; empty: not known
 };
 
 std::string to_text(const RunningModule& module);

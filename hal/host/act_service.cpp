@@ -20,7 +20,7 @@ ActService::ActService(bus::Participant& ring, const ActConfig& config, const ro
       imu_(ring.create_reader(topics::imu)),
       module_state_(ring.create_reader(topics::module_state)),
       event_(ring.create_writer(topics::event)),
-      fault_(ring.create_writer(topics::fault)) {}
+      faults_(ring, config.module_id, "hardware", config.recorder, recorded(devices)) {}
 
 void ActService::step(TimePoint now) noexcept {
   watch_attitude();
@@ -31,7 +31,9 @@ void ActService::step(TimePoint now) noexcept {
     write_rotors(now);
   }
   safe_.note_written(now, devices_.armed);
-  write_joints_and_latches();
+  write_joints_and_latches(now);
+  if (faults_.records()) record(now);
+  faults_.tell(now);
   last_step_ = now;
 }
 
@@ -66,10 +68,10 @@ void ActService::set_armed(bool armed, TimePoint now) noexcept {
 }
 
 void ActService::write_rotors(TimePoint) noexcept {
-  std::array<RotorSetpoint, robot::rotors_max> setpoints{};
+  written_ = {};
   const auto& rotors = safe_.last_command().rotors;
-  for (std::size_t k = 0; k < rotors.size(); ++k) setpoints[k] = {rotors[k].thrust_N, rotors[k].gimbal_rad};
-  devices_.rotors->write(std::span(setpoints).first(devices_.rotor_count));
+  for (std::size_t k = 0; k < rotors.size(); ++k) written_[k] = {rotors[k].thrust_N, rotors[k].gimbal_rad};
+  devices_.rotors->write(std::span(written_).first(devices_.rotor_count));
 }
 
 void ActService::write_safe_output(TimePoint now) noexcept {
@@ -82,6 +84,8 @@ void ActService::write_safe_output(TimePoint now) noexcept {
     set_armed(false, now);
     return;
   }
+  written_ = {};
+  std::copy(setpoints.begin(), setpoints.end(), written_.begin());
   devices_.rotors->write(setpoints);
 }
 
@@ -99,7 +103,7 @@ void ActService::watch_attitude() noexcept {
   }
 }
 
-void ActService::write_joints_and_latches() noexcept {
+void ActService::write_joints_and_latches(TimePoint now) noexcept {
   while (const auto command = joint_command_.take()) {
     if (command->value.module_id != config_.module_id || command->value.joints.size() != devices_.joint_count)
       continue;
@@ -108,6 +112,8 @@ void ActService::write_joints_and_latches() noexcept {
       setpoints[k] = {command->value.joints[k].position_rad, command->value.joints[k].velocity_rad_s};
     }
     devices_.joints->write(std::span(setpoints).first(devices_.joint_count));
+    last_joints_ = command->value;
+    last_joints_at_ = now;
   }
   while (const auto command = latch_command_.take()) {
     if (command->value.module_id != config_.module_id || command->value.port >= devices_.latches.size()) continue;
@@ -116,11 +122,7 @@ void ActService::write_joints_and_latches() noexcept {
 }
 
 void ActService::report(TimePoint now, msg::Severity severity, const char* text) noexcept {
-  msg::Fault out{.module_id = config_.module_id, .stamp_ns = to_ns(now), .severity = severity};
-  out.service = "hardware";
-  out.device = "rotors";
-  out.text = text;
-  fault_.write(out);
+  faults_.raise(now, severity, "rotors", text);
 }
 
 }  // namespace eciton::hal

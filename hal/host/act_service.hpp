@@ -2,9 +2,11 @@
 // last one for 20 ms, then flies the module down on the IMU (in a chain it first holds the hover wrench).
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/bus/participant.hpp"
+#include "core/runtime/fault_reporter.hpp"
 #include "core/runtime/service.hpp"
 #include "hal/devices.hpp"
 #include "hal/host/safe_output.hpp"
@@ -16,6 +18,7 @@ struct ActConfig {
   std::uint32_t module_id = 0;
   double hold_s = 0.02;      // the last command stands for so long
   double at_most_s = 0.004;  // steps without a command
+  runtime::RecorderConfig recorder{};
 };
 
 class ActService final : public runtime::Service {
@@ -39,9 +42,13 @@ class ActService final : public runtime::Service {
   void write_rotors(TimePoint now) noexcept;
   void write_safe_output(TimePoint now) noexcept;
   void watch_attitude() noexcept;
-  void write_joints_and_latches() noexcept;
+  void write_joints_and_latches(TimePoint now) noexcept;
   void set_armed(bool armed, TimePoint now) noexcept;
   void report(TimePoint now, msg::Severity severity, const char* text) noexcept;
+  // act_service_record.cpp
+  static std::vector<runtime::Column> recorded(const Devices& devices);
+  /// What this step knew and did.
+  void record(TimePoint now) noexcept;
 
   ActConfig config_;
   robot::Airframe airframe_;
@@ -50,6 +57,9 @@ class ActService final : public runtime::Service {
 
   bool rotors_refuse_ = false;  // to be armed
   TimePoint last_command_{};
+  std::array<RotorSetpoint, robot::rotors_max> written_{};  // last
+  msg::JointCommand last_joints_;
+  TimePoint last_joints_at_{};
   TimePoint last_step_{};
 
   bus::Reader<msg::RotorCommand> rotor_command_;
@@ -58,7 +68,7 @@ class ActService final : public runtime::Service {
   bus::Reader<msg::Imu> imu_;
   bus::Reader<msg::ModuleState> module_state_;
   bus::Writer<msg::Event> event_;
-  bus::Writer<msg::Fault> fault_;
+  runtime::FaultReporter faults_;
 };
 
 }  // namespace eciton::hal

@@ -1,10 +1,9 @@
 // Load, power, fly on.
 #include "hal/host/resumption.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 
+#include "core/base/log.hpp"
 #include "core/runtime/checkpoint.hpp"
 
 namespace eciton::hal {

@@ -38,7 +38,11 @@ class SafeOutput {
   TimePoint written_at() const { return written_at_; }
   bool armed() const { return armed_; }
 
-  bool flies() const { return descent_.phase() != robot::SafePhase::idle; }
+  robot::SafePhase phase() const { return descent_.phase(); }
+  bool flies() const { return phase() != robot::SafePhase::idle; }
+  const robot::AttitudeFilter& attitude() const { return attitude_; }
+  TimePoint last_imu() const { return last_imu_; }
+  const robot::Vector3& specific_force_M_m_s2() const { return specific_force_M_; }
   /// From the last command on: it levels and descends, or holds the hover wrench if that command asked for it.
   void begin() noexcept;
   /// After `fallen_s` without any output, because this host's process died.

@@ -35,6 +35,7 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
       allocator_(airframe),
       reach_(airframe),
       neighbourhood_(config.module_id),
+      faults_(ring, config.module_id, "control", config.recorder, recorded(airframe)),
       module_state_(ring.create_reader(topics::module_state)),
       joint_state_(ring.create_reader(topics::joint_state)),
       rotor_state_(ring.create_reader(topics::rotor_state)),
@@ -60,6 +61,7 @@ ControlService::ControlService(bus::Participant& ring, const ControlConfig& conf
 
 void ControlService::step(TimePoint now) noexcept {
   if (first_step_ && !loaded_) epoch_ = now;
+  sent_.reset();
   take_state(now);
   take_surroundings(now);
   take_chain(now);
@@ -80,6 +82,8 @@ void ControlService::step(TimePoint now) noexcept {
     write_idle(now);
   }
   report_mode(now);
+  if (faults_.records()) record(now);
+  faults_.tell(now);
   last_step_ = now;
   first_step_ = false;
 }
@@ -107,6 +111,11 @@ bool ControlService::settled(TimePoint now) noexcept {
     // Nothing to go on from: the hardware host brings it down, and we wait for that.
     if (mode_ != FlightMode::stopped) mode_ = FlightMode::disarmed;
     loaded_ = false;
+    if (!gave_up_) {
+      faults_.raise(now, msg::Severity::error, "flight",
+                    "started in the air with nothing to go on from: silent until the hardware host has landed");
+    }
+    gave_up_ = true;
     return false;
   }
   settled_ = true;
@@ -141,9 +150,12 @@ void ControlService::take_surroundings(TimePoint now) noexcept {
     for (std::size_t k = 0; k < airframe_.joints.size() && k < joints.joints.size(); ++k) {
       joint_rad_[k] = joints.joints[k].position_rad;
     }
+    joint_state_at_ = now - sample->age;
   }
   while (const auto sample = rotor_state_.take()) {
-    if (sample->value.module_id == config_.module_id) rotors_armed_ = sample->value.armed;
+    if (sample->value.module_id != config_.module_id) continue;
+    rotors_armed_ = sample->value.armed;
+    rotor_state_at_ = now - sample->age;
   }
   while (const auto sample = docking_state_.take()) {
     neighbourhood_.hear(sample->value, now - sample->age);
@@ -271,6 +283,7 @@ void ControlService::take_wrenches(TimePoint now) noexcept {
   }
   while (const auto sample = contact_wrench_.take()) {
     const msg::ContactWrench& w = sample->value;
+    if (w.module_id == config_.module_id) contact_wrench_at_ = now - sample->age;
     if (w.module_id == config_.module_id && in_chain() && w.epoch == view_.active_epoch) take_contact_wrench(w, now);
   }
   if (in_chain() && now - law_updated_ > law_silence) {
@@ -332,7 +345,16 @@ void ControlService::judge(TimePoint now) noexcept {
 
 void ControlService::follow_mode(TimePoint now) noexcept {
   const FlightMode before = mode_;
-  mode_ = advance(before, conditions_).mode;
+  const FlightDecision decision = advance(before, conditions_);
+  mode_ = decision.mode;
+  if (before != mode_ && mode_ == FlightMode::failsafe) {
+    faults_.raise(now, msg::Severity::error, "flight",
+                  conditions_.state_usable ? "module state too old: silent, the hardware host flies it down"
+                                           : "estimation lost: silent, the hardware host flies it down");
+  }
+  if (before == FlightMode::armed && mode_ == FlightMode::disarmed) {
+    faults_.raise(now, msg::Severity::warning, "flight", decision.reason);
+  }
   if (before == FlightMode::failsafe && mode_ == FlightMode::hover) {
     // Apart it stays where it drifted to; a member of a chain goes back to its place in it.
     if (!in_chain()) reference_.hold({motion_.p_WM, robot::upright(motion_.R_WM)});
@@ -394,6 +416,7 @@ void ControlService::write_rotors(TimePoint now) noexcept {
   for (const robot::RotorOutput& rotor : allocation_.outputs())
     out.rotors.push_back({rotor.thrust_N, rotor.gimbal_rad});
   rotor_command_.write(out);
+  sent_ = out;
   if (is_base() && now - base_written_at_ >= base_reference_interval) write_base_reference(now);
 }
 
@@ -444,6 +467,7 @@ void ControlService::write_idle(TimePoint now) noexcept {
     out.rotors.push_back({out.armed ? rotor.thrust_N_min : 0, {}});
   }
   rotor_command_.write(out);
+  sent_ = out;
   pose_control_.reset();
   hand_over_.reset();
 }

@@ -11,6 +11,7 @@
 #include "core/robot/allocation.hpp"
 #include "core/robot/kinematics.hpp"
 #include "core/robot/model_errors.hpp"
+#include "core/runtime/fault_reporter.hpp"
 #include "core/runtime/service.hpp"
 #include "idl/topics.hpp"
 #include "services/control/contact_wrench_law.hpp"
@@ -44,8 +45,9 @@ struct ControlConfig {
   bool separation = true;                          // keeps its distance from modules it does not dock with
   std::array<double, 3> fence_low_m{-50, -50, 0};  // of the box, in W, that centres of mass stay in
   std::array<double, 3> fence_high_m{50, 50, 30};
-  double height_m_min = 0.3;      // of goals
-  double observer_gain_1_s = 10;  // as estimation's config says: the law's rate follows from it
+  double height_m_min = 0.3;           // of goals
+  double observer_gain_1_s = 10;       // as estimation's config says: the law's rate follows from it
+  runtime::RecorderConfig recorder{};  // as the module's config says
 
   template <class V>
   void visit_fields(V& v) {
@@ -157,6 +159,10 @@ class ControlService final : public runtime::Service {
   void answer(msg::GoalKind kind, std::uint64_t correlation_id, msg::GoalPhase phase, std::string_view reason,
               TimePoint now) noexcept;
   void report_mode(TimePoint now) noexcept;
+  // control_service_record.cpp
+  static std::vector<runtime::Column> recorded(const robot::Airframe& airframe);
+  /// What this step knew and did.
+  void record(TimePoint now) noexcept;
 
   ControlConfig config_;
   robot::Airframe airframe_;
@@ -181,6 +187,7 @@ class ControlService final : public runtime::Service {
   TimePoint saved_at_{};  // ... of then
   bool settled_ = false;
   std::optional<bool> rotors_armed_;  // as the hardware host says
+  bool gave_up_ = false;              // after a start in the air with nothing to go on from: told
   msg::ModuleState state_;            // the newest
   TimePoint state_at_{};
   ModuleMotion motion_;  // extrapolated to now
@@ -209,7 +216,11 @@ class ControlService final : public runtime::Service {
   std::uint64_t answered_mode_ = 0, answered_flight_ = 0, answered_morph_ = 0, answered_contact_ = 0;
   FlightMode reported_mode_ = FlightMode::disarmed;
 
-  std::uint64_t rejected_ = 0;  // references that are none
+  std::uint64_t rejected_ = 0;             // references that are none
+  std::optional<msg::RotorCommand> sent_;  // in this step
+  TimePoint joint_state_at_{}, rotor_state_at_{}, contact_wrench_at_{};
+  bool bad_reference_ = false;  // the last one was no pose: told
+  runtime::FaultReporter faults_;
 
   bus::Reader<msg::ModuleState> module_state_;
   bus::Reader<msg::JointState> joint_state_;

@@ -249,9 +249,15 @@ void ControlService::take_docking_reference(const msg::DockingReference& referen
   if (!alone && !of_chain) return;
   if (!decide(mode_, FlightRequest::go_to, conditions_).accepted) return;
   if (!is_pose(reference.p_WM_m, reference.q_WM)) {
-    ++rejected_;  // the last one is held
+    ++rejected_;
+    if (!bad_reference_) {
+      faults_.raise(now, msg::Severity::warning, "docking",
+                    "a docking reference that is no pose: the last one is held");
+    }
+    bad_reference_ = true;
     return;
   }
+  bad_reference_ = false;
   mode_ = FlightMode::hover;
   goal_pending_ = false;
   robot::PoseReference moving;

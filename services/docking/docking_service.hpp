@@ -64,6 +64,9 @@ class DockingService final : public runtime::Service {
     return runtime::every(from_s(1 / config_.rate_Hz), runtime::Phase::coordinate);
   }
   void step(TimePoint now) noexcept override;
+  void describe(msg::Heartbeat& heartbeat) const noexcept override {
+    heartbeat.rejected = membership_.claims_refused();
+  }
   std::uint32_t state_version() const noexcept override { return 1; }
   /// The goals under way: a start anew knows nothing else of them, and says that they are over.
   void save_state(runtime::StateWriter& writer) const noexcept override {

@@ -76,11 +76,24 @@ void Membership::take(TimePoint) noexcept {
     latches_[s.port].status = static_cast<chain::LatchStatus>(s.status);
   }
   while (const auto sample = link_claims_.take()) {
-    if (sample->value.module_id != config_.module_id) claims_.join(from_message(sample->value));
+    const chain::Claim claim = from_message(sample->value);
+    if (claim.module == config_.module_id) continue;
+    if (possible(claim)) {
+      claims_.join(claim);
+    } else {
+      ++claims_refused_;
+    }
   }
   while (const auto sample = chain_views_.take()) {
     if (sample->value.module_id != config_.module_id) announcements_.join(from_message(sample->value));
   }
+}
+
+bool Membership::possible(const chain::Claim& claim) const noexcept {
+  if (claim.module == 0 || claim.port >= config_.ports) return false;
+  if (claim.withdrawn) return true;
+  return claim.latch == chain::LatchStatus::latched && claim.peer != 0 && claim.peer != claim.module &&
+         claim.peer_port < config_.ports;
 }
 
 void Membership::claim(std::uint32_t port, TimePoint now) noexcept {

@@ -39,6 +39,8 @@ class Membership {
   bool linked(std::uint32_t module, std::uint32_t port) const;
   /// Whether the active view holds both us and `other`.
   bool active_with(std::uint32_t other) const;
+  /// Claims that were not taken: the radio lets in none of them, so somebody else on the ring made them.
+  std::uint64_t claims_refused() const { return claims_refused_ + claims_.refused(); }
 
  private:
   struct Latch {
@@ -49,6 +51,7 @@ class Membership {
   };
 
   void take(TimePoint now) noexcept;
+  bool possible(const chain::Claim& claim) const noexcept;
   void claim(std::uint32_t port, TimePoint now) noexcept;
   void publish(TimePoint now) noexcept;
 
@@ -59,6 +62,7 @@ class Membership {
   chain::AnnouncementTable announcements_;
   std::array<Latch, chain::max_ports> latches_{};
   std::array<chain::Claim, chain::max_ports> own_{};
+  std::uint64_t claims_refused_ = 0;
   std::uint64_t sequence_number_ = 0;
   std::uint64_t published_claim_ = 0;
   std::uint64_t published_announcement_ = 0;

@@ -17,7 +17,8 @@ std::uint32_t module_of(const bus::TopicInfo& topic, std::span<const std::uint8_
          static_cast<std::uint32_t>(hash[2]) << 8 | hash[3];
 }
 
-constexpr Duration echo_age_max = std::chrono::seconds(20);  // of a peer that is still there
+constexpr Duration echo_age_max = std::chrono::seconds(20);        // of a peer that is still there
+constexpr Duration state_period = std::chrono::milliseconds(250);  // `eciton status` listens for half a second
 constexpr std::uint32_t rtps_overhead_bytes = 98;  // Ethernet 14, IP 20, UDP 8, RTPS 20, time stamp 12, data 24
 
 enum class Crosses { always, near, chained };  // outward: at any time, near a peer, in a chain
@@ -33,6 +34,7 @@ struct RadioService::Route {
   bus::RawWriter to_ring;
   RateLimit limit;
   bool goal;
+  bool claims;
   Crosses crosses;
   RadioService* radio = nullptr;
 };
@@ -41,6 +43,7 @@ RadioService::RadioService(bus::Participant& ring, bus::Participant& swarm, cons
     : config_(config),
       ring_(ring),
       swarm_(swarm),
+      claim_guard_({.own_id = config.module_id, .ports = config.ports}),
       watch_(config.module_id, "radio", from_s(config.period_s)),
       airtime_({.budget_bit_s = config.airtime_budget_bit_s, .overhead_bytes = rtps_overhead_bytes}),
       docking_state_(ring.create_reader(topics::docking_state)),
@@ -61,6 +64,13 @@ RadioService::RadioService(bus::Participant& ring, bus::Participant& swarm, cons
     if (topic.scope != bus::Scope::swarm || std::is_same_v<T, msg::Beacon>) return;
     add_route(bus::info(topic));
   });
+  // The routes stay where they are from here on.
+  for (Route& route : routes_) {
+    if (!route.claims) continue;
+    claims_from_swarm_ = &route.from_swarm;
+    claims_to_ring_ = &route.to_ring;
+  }
+  beacons_heard_.tell_origins();
   beacon_.module_id = config.module_id;
   beacon_.incarnation = config.incarnation;
 }
@@ -85,6 +95,7 @@ void RadioService::add_route(const bus::TopicInfo& topic) {
                      .to_ring = ring_.create_raw_writer(topic),
                      .limit = RateLimit(pace),
                      .goal = goal,
+                     .claims = topic.name == topics::link_claim.name,
                      .crosses = chained            ? Crosses::chained
                                 : wrench || joints ? Crosses::near
                                                    : Crosses::always,
@@ -100,9 +111,11 @@ void RadioService::step(TimePoint now) noexcept {
     forward_out(route);
     forward_in(route);
   }
+  look_at_held_claims();
   // Further ahead than any period: the clock was set back.
   const Duration longest = from_s(std::max(config_.beacon_period_s, config_.beacon_near_period_s));
   if (now >= beacon_due_ || beacon_due_ > now + longest) send_beacon(now);
+  if (now >= state_due_ || state_due_ > now + longest) write_state(now);
 }
 
 void RadioService::forward_out(Route& route) noexcept {
@@ -125,6 +138,7 @@ void RadioService::forward_in(Route& route) noexcept {
   route.from_swarm.take(
       [](void* context, std::span<const std::uint8_t> cdr) {
         auto& r = *static_cast<Route*>(context);
+        if (r.claims) return r.radio->take_claim(r.to_ring, cdr, r.from_swarm.origin());
         if (!r.goal && module_of(r.from_swarm.topic(), cdr) == r.radio->config_.module_id) return;
         r.to_ring.write(cdr);
       },
@@ -180,6 +194,7 @@ void RadioService::hear_beacons(TimePoint now) noexcept {
       meet_own_id(beacon, now);
       continue;
     }
+    claim_guard_.hear_beacon(beacon.module_id, beacon.incarnation, heard->origin);
     beacon_to_ring_.write(beacon);
     if (beacon.module_id >= clocks_.size()) continue;
     heard_[beacon.module_id] = {beacon.stamp_ns, now};
@@ -196,6 +211,11 @@ void RadioService::hear_beacons(TimePoint now) noexcept {
 
 void RadioService::meet_own_id(const msg::Beacon& beacon, TimePoint now) noexcept {
   own_id_.hear(now, beacon.incarnation, from_ns(beacon.stamp_ns));
+  if (!duplicate_id_ && beacon.incarnation != config_.incarnation) {
+    // Ourselves before a restart, or another with our id: whether they take turns shows sooner when they come sooner.
+    beacon_due_ = std::min(beacon_due_, now);
+    urgent_beacons_ = 4;
+  }
   if (duplicate_id_ || !own_id_.met(now)) return;
   duplicate_id_ = true;
   beacon_due_ = now;
@@ -251,6 +271,8 @@ void RadioService::write_state(TimePoint now) noexcept {
                         .sent = sent_,
                         .dropped = dropped_,
                         .peers = {}};
+  add_refused_claims(state);
+  state_due_ = now + state_period;
   for (std::uint32_t id = 0; id < clocks_.size(); ++id) {
     const auto offset = clocks_[id].offset(now);
     if (!offset) continue;

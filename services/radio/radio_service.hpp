@@ -13,6 +13,7 @@
 #include "core/runtime/service.hpp"
 #include "idl/topics.hpp"
 #include "services/radio/airtime.hpp"
+#include "services/radio/claim_guard.hpp"
 #include "services/radio/duplicate_id.hpp"
 #include "services/radio/peer_clock.hpp"
 
@@ -23,6 +24,7 @@ struct RadioConfig {
   std::string name;  // of the module
   std::string airframe;
   std::uint64_t incarnation = 1;
+  std::uint32_t ports = 2;  // of each module of the fleet
   double period_s = 0.01;
   double state_rate_Hz = 50;
   double joint_rate_Hz = 50;
@@ -55,9 +57,19 @@ class RadioService final : public runtime::Service {
     return runtime::every(from_s(config_.period_s), runtime::Phase::coordinate);
   }
   void step(TimePoint now) noexcept override;
+  void describe(msg::Heartbeat& heartbeat) const noexcept override { heartbeat.rejected = claim_guard_.refused(); }
 
  private:
   struct Route;
+  /// Of a module that was not heard yet.
+  struct HeldClaim {
+    GuardedClaim claim;
+    std::uint64_t origin = 0;
+    TimePoint since{};
+    bool overdue = false;  // counted as of an unknown module
+    std::size_t size = 0;  // 0: a free place
+    std::array<std::uint8_t, bus::TypeTraits<msg::LinkClaim>::size_max> bytes{};
+  };
 
   void add_route(const bus::TopicInfo& topic);
   void forward_out(Route& route) noexcept;
@@ -70,6 +82,12 @@ class RadioService final : public runtime::Service {
   void add_echoes(std::size_t most, TimePoint now) noexcept;
   void write_state(TimePoint now) noexcept;
   void introduce(TimePoint now) noexcept;
+  // radio_service_claims.cpp
+  void take_claim(bus::RawWriter& to_ring, std::span<const std::uint8_t> cdr, std::uint64_t origin) noexcept;
+  void hold_claim(const GuardedClaim& claim, std::span<const std::uint8_t> cdr, std::uint64_t origin) noexcept;
+  void look_at_held_claims() noexcept;
+  void refuse_claim(ClaimFault fault, std::uint32_t module) noexcept;
+  void add_refused_claims(msg::RadioState& state) const noexcept;
 
   RadioConfig config_;
   bus::Participant& ring_;
@@ -77,6 +95,7 @@ class RadioService final : public runtime::Service {
   std::vector<Route> routes_;
   TimePoint now_{};
   TimePoint beacon_due_{};
+  TimePoint state_due_{};
   int urgent_beacons_ = 0;
   bool near_ = false;  // approaching or in a chain: wrenches go out
   bool docking_ = false;
@@ -84,6 +103,11 @@ class RadioService final : public runtime::Service {
   bool chained_ = false;
   DuplicateId own_id_;
   bool duplicate_id_ = false;
+  ClaimGuard claim_guard_;
+  std::array<HeldClaim, 16> held_claims_{};
+  std::array<std::optional<TimePoint>, claim_fault_count> claims_told_at_{};
+  bus::RawReader* claims_from_swarm_ = nullptr;  // of their route
+  bus::RawWriter* claims_to_ring_ = nullptr;
   runtime::HeartbeatWatch watch_;
   Airtime airtime_;
   std::uint64_t sent_ = 0;

@@ -31,27 +31,72 @@ class FailureConformance : public ::testing::TestWithParam<Pair> {
   Participant here{config_of(GetParam().reader, test_domain(), short_lease)};
 };
 
+/// One or the other, as the vendor has it.
+class Peer {
+ public:
+  Peer(const std::string& vendor, int incarnation) {
+    if (vendor == "sim_network") {
+      participant_.emplace(incarnation);
+    } else {
+      process_.emplace(vendor, incarnation);
+    }
+  }
+
+ private:
+  std::optional<PeerProcess> process_;
+  std::optional<PeerParticipant> participant_;
+};
+
 TEST_P(FailureConformance, APeerThatDiesIsNoticedAndHeardAgainWhenItReturns) {
   auto claims = here.create_reader(topics::link_claim);
   auto states = here.create_reader(topics::module_state);
   for (int incarnation = 1; incarnation <= 2; ++incarnation) {
-    std::optional<PeerProcess> process;
-    std::optional<PeerParticipant> participant;
-    if (GetParam().writer == "sim_network") {
-      participant.emplace(incarnation);
-    } else {
-      process.emplace(GetParam().writer, incarnation);
-    }
+    std::optional<Peer> peer(std::in_place, GetParam().writer, incarnation);
     std::vector<msg::LinkClaim> heard;
     EXPECT_TRUE(take_until(claims, heard, [&](const auto& all) { return !all.empty(); })) << "life " << incarnation;
     EXPECT_TRUE(eventually([&] { return states.take().has_value(); })) << "life " << incarnation;
     ASSERT_FALSE(heard.empty());
     EXPECT_EQ(heard.back().incarnation, static_cast<std::uint64_t>(incarnation));
     EXPECT_TRUE(eventually([&] { return claims.matched() == 1; }));
-    process.reset();
-    participant.reset();
+    peer.reset();
     EXPECT_TRUE(eventually([&] { return claims.matched() == 0 && states.matched() == 0; })) << "life " << incarnation;
   }
+}
+
+TEST_P(FailureConformance, AllWritersOfAParticipantHaveOneOriginAndItsNextLifeHasAnother) {
+  auto claims = here.create_reader(topics::link_claim);
+  auto states = here.create_reader(topics::module_state);
+  claims.tell_origins(), states.tell_origins();
+  std::uint64_t before = 0;
+  for (int incarnation = 1; incarnation <= 2; ++incarnation) {
+    const Peer peer(GetParam().writer, incarnation);
+    std::uint64_t of_claim = 0, of_state = 0;
+    EXPECT_TRUE(eventually([&] {
+      while (const auto claim = claims.take()) {
+        if (claim->value.incarnation == static_cast<std::uint64_t>(incarnation)) of_claim = claim->origin;
+      }
+      // States of the last life may still be there.
+      while (const auto state = states.take()) of_state = state->origin;
+      return of_claim != 0 && of_state == of_claim;
+    })) << "life "
+        << incarnation << ": claim " << of_claim << ", state " << of_state;
+    EXPECT_NE(of_claim, before);
+    before = of_claim;
+  }
+}
+
+TEST_P(FailureConformance, AParticipantsOwnSamplesAreKnownAsItsOwn) {
+  auto writer = here.create_writer(topics::link_claim);
+  auto reader = here.create_reader(topics::link_claim);
+  writer.write(claim(1, 0, 1));
+  const auto silent = reader.take();
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->origin, 0u) << "it was not asked to tell";
+  reader.tell_origins();
+  writer.write(claim(1, 0, 2));
+  const auto own = reader.take();
+  ASSERT_TRUE(own);
+  EXPECT_EQ(own->origin, ReaderCore::own_origin);
 }
 
 INSTANTIATE_TEST_SUITE_P(Failure, FailureConformance, ::testing::ValuesIn(all_pairs), name_of);
@@ -98,7 +143,7 @@ TEST(PluginErrorTest, APluginOfAnotherAbiIsRefused) {
   const PluginPath path(ECITON_BAD_PLUGINS);
   EXPECT_EQ(refusal(config_of("wrong_abi")),
             "DDS plugin " ECITON_BAD_PLUGINS
-            "/libeciton_dds_wrong_abi.so has ABI version 999, this program needs 2: install the plugin of the same "
+            "/libeciton_dds_wrong_abi.so has ABI version 999, this program needs 3: install the plugin of the same "
             "Eciton release");
 }
 

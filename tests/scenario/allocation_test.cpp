@@ -1,6 +1,9 @@
 // No step of any service touches the heap, apart, docking or in a chain; nor do the hardware host, the executor
 // or the bus below them.
 #include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
 
 #include "tests/allocation_guard/allocation_guard.hpp"
 #include "tests/scenario/fleet.hpp"
@@ -57,6 +60,25 @@ TEST(StepAllocationTest, NoServiceUsesTheHeapInFlight) {
   const std::vector<double> bent{0, 0, 0.2, 0};
   pilot.follow(pilot.op().morph(1, bent, 0), 0.6);
   expect_no_allocation(simulation, 2, "morphing as a chain");
+}
+
+TEST(StepAllocationTest, NeitherDoesAFaultThatIsRecorded) {
+  if (!testing::AllocationGuard::available()) GTEST_SKIP() << "a sanitizer brings its own heap";
+  std::string scratch = (std::filesystem::temp_directory_path() / "eciton-faults-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(scratch.data()), nullptr);
+  {
+    SimulationConfig config = row_of(1, 11);
+    config.module.recorder.directory = scratch;
+    Simulation simulation(config);
+    Pilot pilot(simulation);
+    pilot.bring_to_hover(heights(1));
+    expect_no_allocation(simulation, 1, "hovering");
+    simulation.suspend(0, "estimation");
+    expect_no_allocation(simulation, 2, "losing its state, with the hardware host's safe output after it");
+  }
+  const auto files = std::distance(std::filesystem::directory_iterator(scratch + "/m1"), {});
+  EXPECT_EQ(files, 2) << "of control and of the hardware host";
+  std::filesystem::remove_all(scratch);
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ constexpr eciton_plugin plugin_table(const char* vendor, const char* version) {
   };
   table.reader_matched = [](Reader* reader) { return reader->matched(); };
   table.reader_losses = [](Reader* reader, eciton_reader_losses* losses) { *losses = reader->losses(); };
+  table.reader_origin = [](Reader* reader) { return reader->origin(); };
   return table;
 }
 

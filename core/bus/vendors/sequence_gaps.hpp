@@ -9,6 +9,18 @@ namespace eciton::bus::vendors {
 
 using WriterGuid = std::array<std::uint8_t, 16>;
 
+/// For a plugin's reader_origin: of the GUID's first twelve bytes, which all endpoints of a participant share.
+/// FNV-1a.
+inline std::uint64_t origin_of(const WriterGuid& writer) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  bool known = false;
+  for (std::size_t k = 0; k < 12; ++k) {
+    known = known || writer[k] != 0;
+    hash = (hash ^ writer[k]) * 0x100000001b3u;
+  }
+  return known ? hash : 0;
+}
+
 /// Samples may come in any order. Of more writers than there is room for, the one unheard for longest is forgotten,
 /// and what it missed kept. Real-time safe, not thread-safe.
 class SequenceGaps {

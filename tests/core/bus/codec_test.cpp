@@ -81,13 +81,15 @@ TEST(CodecTest, WritesStringsAndSequencesAsWorkedOutByHand) {
   fault.service = "ab";
   fault.device = "";
   fault.text = "xyz";
+  fault.record = "csv";
   const Bytes expected = {0, 1, 0, 0, 1,   0,   0,   0, 0, 0,  //
                           0, 0,                                // module_id, padding to 8
                           2, 0, 0, 0, 0,   0,   0,   0,        // stamp_ns
                           2, 0, 0, 0,                          // severity
                           3, 0, 0, 0, 'a', 'b', 0,   0,        // service: its length with the zero; padding
                           1, 0, 0, 0, 0,   0,   0,   0,        // device
-                          4, 0, 0, 0, 'x', 'y', 'z', 0};       // text
+                          4, 0, 0, 0, 'x', 'y', 'z', 0,        // text
+                          4, 0, 0, 0, 'c', 's', 'v', 0};       // record
   EXPECT_EQ(encoded(fault), expected);
   msg::Fault back;
   ASSERT_TRUE(decodes(expected, back));

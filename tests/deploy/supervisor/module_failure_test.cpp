@@ -92,6 +92,11 @@ class Ear {
            std::all_of(services_.begin(), services_.end(), [&](const auto& s) { return s.second.beats >= times; });
   }
   const Service& of(const std::string& service) { return services_[service]; }
+  /// Link claims in a module's name that its radio did not write, as the newest radio_state has it.
+  std::uint64_t foreign_claims() {
+    if (const auto state = radio_states_.take_newest()) foreign_claims_ = state->value.claims_foreign;
+    return foreign_claims_;
+  }
   /// The first fault about a service's silence, or its return, that is not older.
   const msg::Fault* about(const std::string& service, msg::Severity severity, std::int64_t since_ns) const {
     for (const msg::Fault& fault : told_) {
@@ -109,8 +114,10 @@ class Ear {
   bus::Participant participant_;
   bus::Reader<msg::Heartbeat> heartbeats_{participant_.create_reader(topics::heartbeat)};
   bus::Reader<msg::Fault> faults_{participant_.create_reader(topics::fault)};
+  bus::Reader<msg::RadioState> radio_states_{participant_.create_reader(topics::radio_state)};
   std::map<std::string, Service> services_;
   std::vector<msg::Fault> told_;
+  std::uint64_t foreign_claims_ = 0;
 };
 
 /// Time that the hypervisor took from this machine, of all cores.
@@ -197,6 +204,22 @@ TEST_P(ModuleFailureTest, IsNoticedAndMended) {
   EXPECT_EQ(supervision_->ends().size(), 5u) << ends();
   EXPECT_NE(ends().find("control: it hung and was killed"), std::string::npos) << ends();
   EXPECT_NE(ends().find("estimation: it ended with signal 9"), std::string::npos) << ends();
+}
+
+TEST_P(ModuleFailureTest, CountsALinkClaimInAModulesNameThatItsRadioDidNotWrite) {
+  ASSERT_TRUE(ear_->listen_until([&] { return ear_->all_beat(10); }, 60s));
+  const auto on_swarm = [&](const std::string& name) {
+    return bus::ParticipantConfig{
+        .vendor = GetParam(), .domain = swarm_domain, .name = name, .network_interface = "lo", .peers = {}};
+  };
+  bus::Participant stray(on_swarm("stray"));
+  auto claims = stray.create_writer(topics::link_claim);
+  ASSERT_TRUE(ear_->listen_until([&] { return claims.matched() == 1; }, 20s));
+  msg::LinkClaim claim{.module_id = id, .port = 1, .stamp_ns = to_ns(wall_now()), .incarnation = 1ull << 62};
+  claim.sequence_number = 1;
+  claim.withdrawn = true;
+  claims.write(claim);
+  EXPECT_TRUE(ear_->listen_until([&] { return ear_->foreign_claims() == 1; }, 20s));
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, ModuleFailureTest, ::testing::Values("cyclonedds", "fastdds"),

@@ -192,6 +192,7 @@ std::uint32_t eciton_reader::take_from(dds_entity_t reader, std::uint32_t count_
     for (dds_return_t k = 0; k < taken; ++k) {
       const auto* bytes = static_cast<const BytesSerdata*>(samples[k]);
       if (infos[k].valid_data) {  // not: a writer went or disposed; the framework tells by fields and ages
+        origin_ = eciton::bus::vendors::origin_of(bytes->origin.writer);
         sink(context, bytes->cdr(), bytes->size);
         ++given;
         ++given_;

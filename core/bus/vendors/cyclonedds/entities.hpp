@@ -99,6 +99,7 @@ struct eciton_reader {
   std::uint32_t take(std::uint32_t count_max, eciton_sink sink, void* context);
   std::uint32_t matched() const;
   eciton_reader_losses losses() const;
+  std::uint64_t origin() const { return origin_; }
 
  private:
   eciton_reader(const eciton_type& type, const eciton_qos& qos, eciton_delivery delivery)
@@ -117,7 +118,8 @@ struct eciton_reader {
   eciton::bus::vendors::InstanceSet keys_;   // used under the lock of the vendor's history,
   eciton::bus::vendors::SequenceGaps gaps_;  // as is this
   std::atomic<std::uint64_t> missing_{0}, rejected_{0}, admitted_{0}, replaced_{0};
-  std::uint64_t given_ = 0;  // of who takes
+  std::uint64_t given_ = 0;   // of who takes, as is this: ...
+  std::uint64_t origin_ = 0;  // ... of the sample being given
   eciton_delivery delivery_;
   eciton::bus::cyclonedds::Reservation memory_;
   eciton::bus::cyclonedds::Entity topic_;

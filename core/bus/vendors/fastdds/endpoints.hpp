@@ -43,6 +43,7 @@ struct eciton_reader final : eprosima::fastdds::dds::DataReaderListener {
   std::uint32_t take(std::uint32_t count_max, eciton_sink sink, void* context);
   std::uint32_t matched() const { return matched_.load(std::memory_order_relaxed); }
   eciton_reader_losses losses() const;
+  std::uint64_t origin() const { return origin_; }
 
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
   void on_subscription_matched(eprosima::fastdds::dds::DataReader* reader,
@@ -73,6 +74,7 @@ struct eciton_reader final : eprosima::fastdds::dds::DataReaderListener {
   eciton_delivery delivery_;
   std::atomic<std::uint32_t> matched_{0};
   eciton::bus::vendors::SequenceGaps gaps_;  // of who takes
+  std::uint64_t origin_ = 0;                 // of the sample being given
   std::atomic<std::uint64_t> missing_{0};    // among the numbers of what was taken
   std::atomic<std::uint64_t> malformed_{0};
   std::atomic<std::uint32_t> lost_{0}, rejected_{0};  // as the vendor's own statuses have it

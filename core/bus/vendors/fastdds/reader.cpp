@@ -76,7 +76,8 @@ std::uint32_t eciton_reader::take_some(fast::DataReader& reader, std::uint32_t c
   const auto taken = static_cast<std::uint32_t>(samples.length());
   for (std::int32_t k = 0; k < samples.length(); ++k) {
     if (participant_.owns(infos[k].publication_handle)) continue;
-    gaps_.observe(guid_of(infos[k].sample_identity), infos[k].sample_identity.sequence_number().to64long());
+    const eciton::bus::vendors::WriterGuid writer = guid_of(infos[k].sample_identity);
+    gaps_.observe(writer, infos[k].sample_identity.sequence_number().to64long());
     if (!infos[k].valid_data) continue;  // a writer went or disposed: the framework tells by fields and ages
     const Bytes& bytes = samples[k];
     std::uint8_t hash[16];
@@ -85,6 +86,7 @@ std::uint32_t eciton_reader::take_some(fast::DataReader& reader, std::uint32_t c
       malformed_.fetch_add(1, std::memory_order_relaxed);
       continue;
     }
+    origin_ = eciton::bus::vendors::origin_of(writer);
     sink(context, bytes.cdr, bytes.size);
     ++given;
   }

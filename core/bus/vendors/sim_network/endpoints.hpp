@@ -24,7 +24,8 @@ struct Writer;
 struct Participant {
   Medium* medium;
   std::string name;
-  std::uint32_t group = 0;  // of the partition; 0: not named in it
+  std::uint64_t number = 0;  // from 1, in the order of creation
+  std::uint32_t group = 0;   // of the partition; 0: not named in it
 };
 
 /// A writer and a reader that fit together, in different participants.
@@ -88,6 +89,7 @@ struct Reader : Endpoint {
   KeepLast queue;
   std::vector<Match*> matches;
   eciton_reader_losses losses{};
+  std::uint64_t origin = 0;      // of the sample being taken: its participant's number
   bool awaits_delivery = false;  // has samples that are to be given to it at once
 };
 

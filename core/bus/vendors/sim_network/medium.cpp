@@ -98,8 +98,8 @@ Participant* Medium::create_participant(std::string_view name, std::string& erro
               std::to_string(domain_) + "; the name is the address: give each participant its own";
       return nullptr;
     }
-  participants_.push_back(std::make_unique<Participant>(
-      Participant{.medium = this, .name = std::string(name), .group = group_of(std::string(name))}));
+  participants_.push_back(std::make_unique<Participant>(Participant{
+      .medium = this, .name = std::string(name), .number = ++numbered_, .group = group_of(std::string(name))}));
   return participants_.back().get();
 }
 

@@ -101,6 +101,7 @@ class Medium {
   std::map<LinkName, Link> links_;               // pointers to its elements stay valid
   std::map<std::string, std::uint32_t> groups_;  // of the partition
   std::vector<std::unique_ptr<Participant>> participants_;
+  std::uint64_t numbered_ = 0;                    // so far, those gone included
   std::vector<std::unique_ptr<Writer>> writers_;  // in order of creation, as are the readers
   std::vector<std::unique_ptr<Reader>> readers_;
   std::vector<Flight> flights_;  // a heap, reserved up to its bound

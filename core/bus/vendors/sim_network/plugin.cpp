@@ -66,6 +66,7 @@ struct eciton_reader {
   }
   std::uint32_t matched() const { return medium_of(self).matched(self); }
   eciton_reader_losses losses() const { return medium_of(self).losses(self); }
+  std::uint64_t origin() const { return self.origin; }
 
   sim::Reader& self;
 };

@@ -23,6 +23,7 @@ class SamplePool {
     KeyHash key;
     std::uint32_t size;
     std::uint32_t references;
+    std::uint64_t origin;  // in a reader's pool: its writer's participant
   };
 
   SamplePool(std::uint32_t slots, std::uint32_t slot_size)
@@ -40,7 +41,8 @@ class SamplePool {
                     .evicted_ns = std::numeric_limits<std::int64_t>::max(),
                     .key = key,
                     .size = static_cast<std::uint32_t>(bytes.size()),
-                    .references = 1};
+                    .references = 1,
+                    .origin = 0};
     std::memcpy(data(slot), bytes.data(), bytes.size());
     return slot;
   }

@@ -173,6 +173,7 @@ void Medium::deliver(Match& match, const Outgoing& sample, bool duplicate) {
     ++reader.losses.rejected;
     return;
   }
+  reader.pool[slot].origin = match.writer->participant.number;
   const auto [kept, evicted] = reader.queue.insert(sample.key, slot);
   if (!kept) {
     reader.pool.release(slot);
@@ -217,6 +218,7 @@ std::uint32_t Medium::take(Reader& reader, std::uint32_t count_max, eciton_sink 
   for (; taken < count_max && !reader.queue.empty(); ++taken) {
     const std::uint32_t slot = reader.queue.pop();
     const auto bytes = reader.pool.bytes(slot);
+    reader.origin = reader.pool[slot].origin;
     lock.unlock();  // the sink may write to another network, which may be writing to this one
     sink(context, bytes.data(), static_cast<std::uint32_t>(bytes.size()));
     lock.lock();
