@@ -44,6 +44,8 @@ std::optional<FlightFailure> ChaosFlight::fly() {
         approach_and_strike(cell);
       } else {
         strike(cell);
+        // What has fallen is lifted again, so that the next blow strikes what flies.
+        if (cell.stage == FlightStage::separated && !outcomes_.back().broken.empty()) go_home();
       }
       if (&cell == &plan_.cells.front()) growth_.begin(watched_);
     }

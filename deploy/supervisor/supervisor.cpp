@@ -80,9 +80,14 @@ void Supervisor::note_end(Child& child, const ProcessEnd& end) {
     return;
   }
   child.report.state = ChildState::waiting;
-  // What ends for the first time is needed back at once; what keeps ending waits longer each time.
-  if (now - child.started >= config_.steady) child.backoff = {};
+  // What ends for the first time is needed back at once, and faults come in company; what keeps ending waits longer
+  // each time.
+  if (now - child.started >= config_.steady) {
+    child.restarts_in_a_row = 0;
+    child.backoff = {};
+  }
   child.restart_at = now + child.backoff;
+  if (++child.restarts_in_a_row < config_.at_once) return;
   child.backoff = std::clamp(2 * child.backoff, config_.backoff_min, config_.backoff_max);
 }
 

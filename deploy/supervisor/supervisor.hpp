@@ -27,12 +27,12 @@ struct ChildSpec {
 };
 
 struct SupervisorConfig {
-  std::filesystem::path log_directory;  // of notify sockets too
-  Duration backoff_min =
-      std::chrono::milliseconds(250);                // the first restart comes at once, the second after this ...
-  Duration backoff_max = std::chrono::seconds(5);    // ... then it doubles with each, up to this
-  Duration steady = std::chrono::seconds(10);        // the next restart of one that ran so long is a first one
-  Duration stop_patience = std::chrono::seconds(5);  // from SIGTERM, or its own STOPPING=1, to SIGKILL
+  std::filesystem::path log_directory;                    // of notify sockets too
+  std::uint32_t at_once = 3;                              // so many restarts come at once, the next ...
+  Duration backoff_min = std::chrono::milliseconds(250);  // ... after this, ...
+  Duration backoff_max = std::chrono::seconds(5);         // ... which doubles with each, up to this
+  Duration steady = std::chrono::seconds(10);             // the next restart of one that ran so long is a first one
+  Duration stop_patience = std::chrono::seconds(5);       // from SIGTERM, or its own STOPPING=1, to SIGKILL
   // A child's silence between two checks counts as at most this: what holds up the supervisor holds up others too.
   Duration silence_per_check_max = std::chrono::milliseconds(100);
 };
@@ -91,6 +91,7 @@ class Supervisor {
     std::optional<ChildProcess> process;
     ChildReport report;
     Duration started{};
+    std::uint32_t restarts_in_a_row = 0;
     Duration backoff{};
     Duration restart_at{};
     std::optional<NotifySocket> notify;
