@@ -18,26 +18,30 @@ using bus::sim_network::Network;
 constexpr std::uint32_t ring_domain = 11, swarm_domain = 1, own_id = 1, peer_id = 2;
 constexpr std::uint64_t later = 1'000'000;  // an incarnation that beats every true one
 
+bus::ParticipantConfig on(std::uint32_t domain, const std::string& name) {
+  return {.vendor = "sim_network", .domain = domain, .name = name, .network_interface = "lo", .peers = {}};
+}
+
+struct Rings {
+  bus::Participant ring{on(ring_domain, "radio")};
+  bus::Participant swarm{on(swarm_domain, "radio"), &ring.waker()};
+  RadioService radio{ring, swarm, {.module_id = own_id, .name = "m1", .airframe = "legion", .incarnation = 7}};
+  bus::Participant services{on(ring_domain, "docking")};
+  docking::Membership membership{services, {.module_id = own_id, .incarnation = 7}};
+  bus::Writer<msg::LatchState> latch = services.create_writer(topics::latch_state);
+  bus::Reader<msg::RadioState> radio_state = services.create_reader(topics::radio_state);
+  bus::Reader<msg::Fault> faults = services.create_reader(topics::fault);
+  bus::Participant peer{on(swarm_domain, "m2/radio")};
+  bus::Writer<msg::Beacon> peer_beacon = peer.create_writer(topics::beacon);
+  bus::Writer<msg::LinkClaim> peer_claim = peer.create_writer(topics::link_claim);
+  bus::Writer<msg::ChainView> peer_view = peer.create_writer(topics::chain_view);
+  bus::Participant nobody{on(swarm_domain, "nobody")};
+  bus::Writer<msg::LinkClaim> forged_claim = nobody.create_writer(topics::link_claim);
+  bus::RawWriter forged_bytes = nobody.create_raw_writer(bus::info(topics::link_claim));
+};
+
 class BadClaimsTest : public ::testing::Test {
  protected:
-  struct Rings {
-    bus::Participant ring{on(ring_domain, "radio")};
-    bus::Participant swarm{on(swarm_domain, "radio"), &ring.waker()};
-    RadioService radio{ring, swarm, {.module_id = own_id, .name = "m1", .airframe = "legion", .incarnation = 7}};
-    bus::Participant services{on(ring_domain, "docking")};
-    docking::Membership membership{services, {.module_id = own_id, .incarnation = 7}};
-    bus::Writer<msg::LatchState> latch = services.create_writer(topics::latch_state);
-    bus::Reader<msg::RadioState> radio_state = services.create_reader(topics::radio_state);
-    bus::Reader<msg::Fault> faults = services.create_reader(topics::fault);
-    bus::Participant peer{on(swarm_domain, "m2/radio")};
-    bus::Writer<msg::Beacon> peer_beacon = peer.create_writer(topics::beacon);
-    bus::Writer<msg::LinkClaim> peer_claim = peer.create_writer(topics::link_claim);
-    bus::Writer<msg::ChainView> peer_view = peer.create_writer(topics::chain_view);
-    bus::Participant nobody{on(swarm_domain, "nobody")};
-    bus::Writer<msg::LinkClaim> forged_claim = nobody.create_writer(topics::link_claim);
-    bus::RawWriter forged_bytes = nobody.create_raw_writer(bus::info(topics::link_claim));
-  };
-
   BadClaimsTest() {
     Network::reset_all();
     for (const std::uint32_t domain : {ring_domain, swarm_domain})
@@ -47,9 +51,6 @@ class BadClaimsTest : public ::testing::Test {
   ~BadClaimsTest() override {
     rings_.reset();
     Network::reset_all();
-  }
-  static bus::ParticipantConfig on(std::uint32_t domain, const std::string& name) {
-    return {.vendor = "sim_network", .domain = domain, .name = name, .network_interface = "lo", .peers = {}};
   }
 
   void run(Duration span, bool peer_beacons = true) {
