@@ -22,7 +22,7 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
 
 ChaosFlight::ChaosFlight(const DemoFleet& fleet, Launches& launches, const runtime::StopFlag& stop, DemoView& view,
                          FaultInjector injector, const ChaosPlan& plan)
-    : FleetFlight(fleet, launches, stop, view), plan_(plan), injector_(std::move(injector)), watched_(launches) {}
+    : FleetFlight(fleet, launches, stop, view), plan_(plan), injector_(std::move(injector)) {}
 
 std::optional<FlightFailure> ChaosFlight::fly() {
   try {
@@ -47,9 +47,9 @@ std::optional<FlightFailure> ChaosFlight::fly() {
         // What has fallen is lifted again, so that the next blow strikes what flies.
         if (cell.stage == FlightStage::separated && !outcomes_.back().broken.empty()) go_home();
       }
-      if (&cell == &plan_.cells.front()) growth_.begin(watched_);
+      if (&cell == &plan_.cells.front()) growth_.begin(launches_);
     }
-    most_growth_ = growth_.most(watched_);
+    most_growth_ = growth_.most(launches_);
     undock_all();
     spread_and_land();
   } catch (const FlightFailure& failed) {

@@ -62,7 +62,6 @@ class ChaosFlight final : public FleetFlight {
   std::vector<std::size_t> chain_before_;       // members of its chain
   const ChaosCell* striking_ = nullptr;
   std::vector<std::string> ended_;  // by themselves
-  const Launches& watched_;
   MemoryGrowth growth_;
   MemoryGrowth::Most most_growth_;
 };
