@@ -12,6 +12,8 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -38,6 +40,11 @@ class CheckpointFile {
   std::uint32_t version_;
   std::size_t size_;
 };
+
+/// Where the service of this name finds and leaves its state.
+inline std::filesystem::path checkpoint_file(const std::filesystem::path& directory, std::string_view service) {
+  return directory / (std::string(service) + ".checkpoint");
+}
 
 /// The state that a service of this version left, into the same values: for whoever cannot wait for the service.
 /// As CheckpointFile::load.

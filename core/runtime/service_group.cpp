@@ -82,7 +82,7 @@ void ServiceGroup::fill_constant_fields(Entry& entry) {
 void ServiceGroup::take_up_checkpoint(Entry& entry) {
   const std::string name(entry.service->name());
   entry.checkpoint =
-      std::make_unique<Checkpoint>(*entry.service, config_.checkpoints / (name + ".checkpoint"), checkpoint_period);
+      std::make_unique<Checkpoint>(*entry.service, checkpoint_file(config_.checkpoints, name), checkpoint_period);
   const auto loaded = entry.checkpoint->load();
   if (!loaded) spdlog::warn("{}: {}", name, loaded.error().message);
   if (loaded && *loaded) spdlog::info("{} goes on from its checkpoint", name);

@@ -4,6 +4,7 @@
 
 #include "core/base/log.hpp"
 #include "core/base/wall_clock.hpp"
+#include "core/runtime/checkpoint.hpp"
 #include "core/runtime/lockstep_master.hpp"
 #include "core/runtime/realtime_thread.hpp"
 #include "core/runtime/service_group.hpp"
@@ -79,8 +80,8 @@ class SimulatedHost {
     deploy::bring_up(devices_);
     if (lockstep_ || checkpoints.empty()) return nullptr;
     const auto wait = [this] { return link_->wait_sensors(std::chrono::milliseconds(10)) == hal::Io::ok; };
-    return hal::Resumption::begin(checkpoints / "actuators.checkpoint", airframe_, devices_,
-                                  {.wait_sensors = wait, .act = [this] { link_->act(); }}, wall_now());
+    return hal::Resumption::begin(runtime::checkpoint_file(checkpoints, hal::ActService::service_name), airframe_,
+                                  devices_, {.wait_sensors = wait, .act = [this] { link_->act(); }}, wall_now());
   }
 
   void tick() {

@@ -23,9 +23,11 @@ struct ActConfig {
 
 class ActService final : public runtime::Service {
  public:
+  static constexpr std::string_view service_name = "actuators";
+
   ActService(bus::Participant& ring, const ActConfig& config, const robot::Airframe& airframe, Devices& devices);
 
-  std::string_view name() const override { return "actuators"; }
+  std::string_view name() const override { return service_name; }
   runtime::Schedule schedule() override {
     return runtime::on(rotor_command_, from_s(config_.at_most_s), runtime::Phase::act);
   }
